@@ -125,10 +125,21 @@ def _varied(vehicle: str) -> list[tuple[str, str]]:
     return list(said)
 
 
-for _vehicle in ("hydrone", "gloria", "mariner", "videoray", "otter", "bluerov2"):
+for _vehicle in (
+    "hydrone",
+    "gloria",
+    "mariner",
+    "kvlcc2",
+    "videoray",
+    "otter",
+    "bluerov2",
+    "remus100",
+    "wam-v",
+):
     part(f"{_vehicle}-parameters")(partial(parameters, _vehicle))
     part(f"{_vehicle}-variants")(partial(variants, _vehicle))
-part("thruster-ship-parameters")(partial(parameters, "thruster-ship"))
+for _vehicle in ("thruster-ship", "supply-ship"):
+    part(f"{_vehicle}-parameters")(partial(parameters, _vehicle))
 
 
 def sensors_of(profile: str) -> str:

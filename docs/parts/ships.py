@@ -41,7 +41,7 @@ def verdicts(rig: str) -> str:
 for _rig in (
     *("gloria-fixed", "gloria-pid", "gloria-backstepping"),
     *("mariner", "thruster-ship", "videoray-open", "videoray-drive", "videoray-tethered"),
-    *("otter", "bluerov2"),
+    *("otter", "bluerov2", "dive", "supply-ship", "wam-v"),
 ):
     part(f"{_rig}-trials")(partial(verdicts, _rig))
 

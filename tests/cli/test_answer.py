@@ -75,7 +75,7 @@ def test_a_campaign_answers_with_its_cases(folder: Path) -> None:
     [
         (("run", "broken.toml"), 2, "broken.toml: criteria.0"),
         (("run", "landing"), 2, "'landing' is a rig, not a trial; its trials: hydrone-landing"),
-        (("run", "otter"), 2, "'otter' is a vehicle of rigs, not a trial; its trials: otter-"),
+        (("run", "oter"), 2, "unknown trial, campaign or vehicle 'oter'; did you mean 'otter'?"),
         (("run", "turns.toml", "--bogus"), 2, "not used as it is meant"),
     ],
 )

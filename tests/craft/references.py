@@ -6,7 +6,9 @@ from pathlib import Path
 import numpy as np
 
 from seatrial.fmi.components.index import component_class
+from seatrial.system.derived import measures
 from seatrial.system.parameters import load_vehicle
+from seatrial.system.quantities import amount
 
 DATA = Path(__file__).parents[1] / "reference"
 STATES = ("x", "y", "z", "phi", "theta", "psi", "u", "v", "w", "p", "q", "r")
@@ -17,9 +19,19 @@ def shipped(fmu, table, variant=None, **values):
     vehicle, _, part = table.partition(".")
     component = component_class(fmu)(part)
     entries = load_vehicle(vehicle).parameter_set(part, variant).values
-    for name, value in {**{n: e.value for n, e in entries.items()}, **values}.items():
+    for name, value in {**{n: in_si(e) for n, e in entries.items()}, **values}.items():
         component.set(name, value)
     return component
+
+
+def in_si(entry):
+    """Return the value of an entry in SI; a text as it is."""
+    if isinstance(entry.value, str):
+        return entry.value
+    if not isinstance(entry.value, list):
+        return amount(entry.value, entry.unit).value
+    found = zip(entry.value, measures(entry, len(entry.value)), strict=True)
+    return [amount(value, unit).value for value, unit in found]
 
 
 def columns(name):

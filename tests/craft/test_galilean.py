@@ -50,6 +50,7 @@ def _order(made, orders):
         ("moment_1", [0.1 * scale * each for each in orders[3:]]),
         ("command", [0.05 * each for each in orders[:2]]),
         ("rudder", 0.3 * orders[0]),
+        ("propeller_order", orders[1]),
     ):
         if name in made.ports:
             axes = made.ports[name].axes

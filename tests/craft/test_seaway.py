@@ -121,6 +121,7 @@ TURNING = {
     "hydrone": ("velocity_start", [0, 0, 0], {"rates_start": [0, 0, 0.1]}),
     "gloria": ("nu_start", [0, 0, 0, 0.1], {"sail_area": 0, "GM_T": 1e3}),
     "mariner": ("nu_start", [7.7175, 0, 0.01], {"model": "cubic"}),
+    "kvlcc2": ("nu_start", [7.97, 0, 0.002], {"propeller_order": 1.0}),
     "thruster-ship": ("nu_start", [0, 0, 0.1], {}),
     "videoray": ("nu_start", [0, 0, 0, 0, 0, 0.1], {}),
     "videoray-surface": ("nu_start", [0, 0, 0.1], {}),
@@ -241,7 +242,7 @@ def test_sections_of_another_waterplane_are_refused():
 
 
 def test_ships_are_pushed_by_the_wind():
-    for vehicle in ("hydrone", "mariner", "thruster-ship"):
+    for vehicle in ("hydrone", "mariner", "kvlcc2", "thruster-ship"):
         hull = craft(vehicle, wind_speed=15.0, wind_direction=math.pi / 2)
         calm = craft(vehicle)
         pushed, still = states(hull, 20.0, 0.1), states(calm, 20.0, 0.1)

@@ -26,7 +26,7 @@ from seatrial.physics.craft.rov import Rov
 from seatrial.system.parameters import load_vehicle
 from tests.devices.running import started
 
-RIGS = Path(__file__).parents[2] / "harness" / "rigs"
+PILOT_FILE = Path(__file__).parents[2] / "harness" / "vehicles" / "videoray" / "pilot.toml"
 DATA = Path(__file__).parents[1] / "reference"
 STATES = ("x", "y", "z", "phi", "theta", "psi", "u", "v", "w", "p", "q", "r")
 FULL = np.array([46.7, 46.7, 25.0])
@@ -88,7 +88,7 @@ PILOT = {
 
 def piloting(name, kind):
     """Return a component of the shipped pilot, with its values there."""
-    pilot = tomllib.loads((RIGS / "pilots" / "videoray.toml").read_text())
+    pilot = tomllib.loads(PILOT_FILE.read_text())
     given = pilot["components"][name]["set"].items()
     return started(kind, **{key: quantity(text, kind.ports[key].unit) for key, text in given})
 

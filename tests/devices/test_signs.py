@@ -12,18 +12,31 @@ import pytest
 from seatrial.fmi.components.index import component_class
 from seatrial.system.parameters import load_vehicle
 from seatrial.system.profile.profile import load_profile
+from tests.craft.references import in_si
 
 from .running import started
 
 G = 9.81
-# A camera measures what there is beside the vehicle: tests/devices/test_camera.py.
+# A camera measures what there is beside the vehicle, tests/devices/test_camera.py; a log measures
+# the water, tests/craft/test_through_water.py.
 SECTIONS = {
     vehicle: [
         section
         for section in load_profile(vehicle).sections()
-        if section.startswith("sensors.") and section != "sensors.camera"
+        if section.startswith("sensors.") and section not in ("sensors.camera", "sensors.log")
     ]
-    for vehicle in ("hydrone", "videoray", "gloria", "mariner", "otter", "bluerov2")
+    for vehicle in (
+        "hydrone",
+        "videoray",
+        "gloria",
+        "mariner",
+        "kvlcc2",
+        "otter",
+        "bluerov2",
+        "remus100",
+        "wam-v",
+        "supply-ship",
+    )
 }
 EACH = [(vehicle, section) for vehicle, sections in SECTIONS.items() for section in sections]
 ERRORS = ("_noise", "_bias", "_instability", "_resolution", "delay", "dropout", "deviation")
@@ -50,12 +63,15 @@ def read(vehicle, section, motion, **inputs):
     return {port.name: np.array(sensor.get(port.name)) for port in sensor.measured}
 
 
-def turn(component, table, duration, **values):
-    """Return the motion of a vehicle's craft after ``duration`` s under these values."""
+def turn(component, table, duration, part="", **values):
+    """Return the motion of a vehicle's craft after ``duration`` s under these values.
+
+    Its parameters are those of the table ``part`` of the file, else of that of its own name.
+    """
     vehicle, _, variant = table.partition("/")
     craft = component_class(component)(vehicle)
-    entries = load_vehicle(vehicle).parameter_set(component, variant or None).values
-    for name, value in {**{n: e.value for n, e in entries.items()}, **values}.items():
+    entries = load_vehicle(vehicle).parameter_set(part or component, variant or None).values
+    for name, value in {**{n: in_si(e) for n, e in entries.items()}, **values}.items():
         craft.set(name, value)
     craft.initialise()
     craft.begin()
@@ -76,7 +92,17 @@ TURNS = {
         "rov", "bluerov2", 10.0, force_1=[20, 0, 0], moment_1=[0, 0, 1], **{"eta_start.z": 5}
     ),
     "mariner": lambda: turn("manoeuvring-ship", "mariner", 400.0, rudder=-0.1),
+    "kvlcc2": lambda: turn("mmg-ship", "kvlcc2", 400.0, rudder=-0.1, propeller_order=1.0),
     "gloria": lambda: turn("sailboat", "gloria", 1.0, rudder=-0.05, **{"eta_start.psi": 1, "nu_start.u": 1.5}),
+    "remus100": lambda: turn(
+        "fitted-craft", "remus100", 20.0, "hull", **{"propulsor_order.p1": 0.6, "foil_angle.f1": 0.2, "position_start.z": 5}
+    ),
+    "wam-v": lambda: turn(
+        "fitted-craft", "wam-v", 20.0, "hull", propulsor_order=[0.4, 0.3] + 6 * [0], waterplane_area=3.2, GM_T=19, GM_L=35
+    ),
+    "supply-ship": lambda: turn(
+        "fitted-craft", "supply-ship", 200.0, "hull", propulsor_order=[0, 0, 0.6, 0.5] + 4 * [0], propulsor_angle=[0, 0, -0.4, -0.4] + 4 * [0]
+    ),
     "surface": lambda: turn("surface-vessel", "videoray-surface/physical", 60.0, command=[0.02, 0.019]),
     "ship": lambda: turn(
         "thruster-ship", "thruster-ship", 5.0, **{"nu_start.u": 5}, moment_1=1e6

@@ -27,8 +27,9 @@ from seatrial.physics.craft.surface_vessel import SurfaceVessel
 from seatrial.physics.craft.thruster_ship import ThrusterShip
 from seatrial.physics.environment.downwash import Downwash
 from seatrial.physics.environment.step_disturbance import StepDisturbance
+from seatrial.physics.parts.mmg_ship import MmgShip
 
-CRAFT = (MarineCraft, Rov, Sailboat, ManoeuvringShip, ThrusterShip, SurfaceVessel)
+CRAFT = (MarineCraft, Rov, Sailboat, ManoeuvringShip, MmgShip, ThrusterShip, SurfaceVessel)
 SENSORS = (Ahrs, Altimeter, Anemometer, Compass, Ctd, Depth, Dvl, EchoSounder, Gnss, Imu, Lbl, Usbl)
 
 

@@ -22,18 +22,33 @@ def feeders(rig, **choices):
 
 
 @pytest.mark.parametrize(
-    "vehicle", ["hydrone", "videoray", "gloria", "mariner", "otter", "bluerov2"]
+    "vehicle",
+    [
+        "hydrone",
+        "videoray",
+        "gloria",
+        "mariner",
+        "kvlcc2",
+        "otter",
+        "bluerov2",
+        "remus100",
+        "wam-v",
+        "supply-ship",
+    ],
 )
 def test_a_plotter_follows_and_commands_every_vehicle(vehicle):
     fed = feeders("sil", vehicle=vehicle, autopilot="nmea0183", step="100 ms")
     feed, guidance = "autopilot.instruments", "autopilot.pilot.guidance"
     assert fed[f"{feed}.heading"] == fed[f"{guidance}.heading"]
     assert fed[f"{feed}.position_n.north"] == "vehicle.{}.position_n.north".format(
-        "positioning" if vehicle in ("videoray", "bluerov2") else "gnss"
+        "positioning" if vehicle in ("videoray", "bluerov2", "remus100") else "gnss"
     )
     assert fed[f"{guidance}.target_heading"] == f"{feed}.target_heading"
     assert fed[f"{guidance}.leg"] == "autopilot.course.leg"
-    rudders = {"gloria": "vehicle.servos.rudder.angle", "mariner": "vehicle.machine.angle"}
+    rudders = {
+        "gloria": "vehicle.servos.rudder.angle",
+        **dict.fromkeys(("mariner", "kvlcc2"), "vehicle.machine.angle"),
+    }
     assert fed.get(f"{feed}.rudder") == rudders.get(vehicle)
 
 

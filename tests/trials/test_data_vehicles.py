@@ -1,4 +1,4 @@
-"""The vehicles that are data alone, Otter and BlueROV2 Heavy: every criterion of their trials holds."""
+"""The vehicles that are data alone: every criterion of their trials holds."""
 
 import pytest
 
@@ -11,7 +11,10 @@ from .test_shipped_trials import TRIALS
 pytestmark = pytest.mark.interop
 
 
-@pytest.mark.parametrize("name", [n for n in TRIALS if n.startswith(("otter", "bluerov2"))])
+DATA_ALONE = ("otter", "bluerov2", "dive", "supply-ship", "wam-v")
+
+
+@pytest.mark.parametrize("name", [n for n in TRIALS if n.startswith(DATA_ALONE)])
 def test_every_criterion_holds(name, tmp_path):
     found = load_run(run_trial(load_trial(name), tmp_path / "run", engine="direct").folder)
     assert found.verdicts

@@ -11,7 +11,23 @@ from .templates import checked_name, texts, write
 
 new_app = typer.Typer(no_args_is_help=True, pretty_exceptions_enable=False)
 
-KINDS = ("usv", "rov")
+KINDS = {
+    "usv": "a catamaran, two thrusters",
+    "rov": "eight thrusters",
+    "auv": "a torpedo, propeller and fins",
+    "azimuth": "a workboat, two azimuth thrusters and a tunnel",
+    "ship": "propeller and rudder",
+}
+"""What a vehicle can be like, and what that is."""
+
+_INVENTED = "every number in them is invented"
+
+_NAME = Annotated[
+    str, typer.Argument(metavar="NAME", help="Letters, digits, '-' and '_', 40 at most.")
+]
+_VEHICLE = Annotated[str, typer.Argument(metavar="NAME", help="Of your vehicle.")]
+_LIKE = Annotated[str, typer.Option(help="; ".join(f"'{k}': {v}" for k, v in KINDS.items()) + ".")]
+_LIKE_IT = Annotated[str, typer.Option(help=f"What the vehicle is like: {', '.join(KINDS)}.")]
 
 
 @new_app.callback()
@@ -20,24 +36,52 @@ def _options() -> None:
 
 
 @new_app.command()
-def vehicle(
-    name: Annotated[
-        str, typer.Argument(metavar="NAME", help="Letters, digits, '-' and '_', 40 at most.")
-    ],
-    like: Annotated[
-        str, typer.Option(help="'usv': a catamaran, two thrusters; 'rov': eight thrusters.")
-    ] = "usv",
-) -> None:
+def vehicle(name: _NAME, like: _LIKE = "usv") -> None:
     """Write a vehicle that runs at once, its numbers invented, below the current folder."""
-    if like not in KINDS:
-        raise InputError(f"--like: {unknown('kind of vehicle', like, KINDS)}")
     steps = [
-        (f"seatrial run {name}", "a course of waypoints, with criteria"),
+        (f"seatrial run {name}", "it sets out to the east"),
+        (f'seatrial run {name} --set sea.height="0.3 m"', "the same in waves"),
+        (f"seatrial run {name} --live --open", "the same, seen in a browser"),
         (f"seatrial describe sil --vehicle {name}", "its components and connections"),
-        (f"seatrial run {name} --autopilot nmea0183", "the same, with a feed for chart plotters"),
-        (f"seatrial run {name}-mission", "for a ground station at UDP port 14550"),
-        (f"seatrial run square --vehicle {name} --autopilot ardupilot=PROGRAM", "under ArduPilot"),
+        (f"seatrial run under-ground-station --vehicle {name}", "for a ground station"),
+        (f"seatrial new trials {name} --like {like}", "trials of its own"),
+        (f"seatrial new ardupilot {name} --like {like}", "what ArduPilot needs"),
     ]
     if like == "usv":
-        steps.append((f"seatrial run {name}-sketch", "its Arduino sketch; needs g++"))
-    write(texts(checked_name(name), like), "every number in them is invented", steps)
+        steps.append((f"seatrial new sketch-of {name}", "an Arduino sketch for it"))
+    write(texts(checked_name(name), _kind(like)), _INVENTED, steps)
+
+
+@new_app.command()
+def trials(name: _VEHICLE, like: _LIKE_IT = "usv") -> None:
+    """Write trials of a vehicle: a course with criteria, and a mission for a ground station."""
+    steps = [
+        (f"seatrial run {name}-course", "waypoints, with criteria"),
+        (f"seatrial run {name}-mission", "for a ground station at UDP port 14550"),
+    ]
+    write(texts(checked_name(name), f"trials/{_kind(like)}"), _INVENTED, steps)
+
+
+@new_app.command()
+def ardupilot(name: _VEHICLE, like: _LIKE_IT = "usv") -> None:
+    """Write what ArduPilot needs to drive a vehicle: rig, parameters, section of its profile."""
+    command = f"seatrial run square --vehicle {name} --autopilot ardupilot=PROGRAM"
+    steps = [(command, "round a square under ArduPilot")]
+    write(texts(checked_name(name), f"ardupilot/{_kind(like)}"), _INVENTED, steps)
+
+
+@new_app.command()
+def sketch_of(name: _VEHICLE) -> None:
+    """Write an Arduino sketch for a vehicle with two thrusters, its trial and profile section."""
+    steps = [
+        (f"seatrial run {name}-sketch", "the sketch in the place of the autopilot; needs g++"),
+        (f"seatrial sketch check harness/firmware/{name} --profile {name}:mega", "its lines"),
+    ]
+    write(texts(checked_name(name), "sketch-of"), _INVENTED, steps)
+
+
+def _kind(like: str) -> str:
+    """Return a kind of vehicle. Raises InputError for one that is none."""
+    if like not in KINDS:
+        raise InputError(f"--like: {unknown('kind of vehicle', like, KINDS)}")
+    return like

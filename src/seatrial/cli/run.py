@@ -1,4 +1,4 @@
-"""``seatrial run``: a trial, or a campaign of trials."""
+"""``seatrial run``: a trial, a vehicle in the trial for every vehicle, or a campaign."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from ..trial.running.supervision import run_supervised
 from .answer import answer
 from .campaign_run import How, run_cases
 from .leaves import Leaves, exit_with
-from .named import refuse_rig, runnable
+from .named import runnable, with_vehicle
 from .options import (
     Autopilot,
     Choices,
@@ -61,7 +61,8 @@ def run(
     trial: Annotated[
         str,
         typer.Argument(
-            help="A trial or campaign: a name, a file or a package.", autocompletion=runnable
+            help="A trial, campaign or vehicle: a name, a file or a package.",
+            autocompletion=runnable,
         ),
     ],
     settings: Settings = None,
@@ -89,7 +90,7 @@ def run(
     hang_after: HangAfter = None,
     keep_going: KeepGoing = False,
 ) -> None:
-    """Run a trial, or a campaign of trials, and say what holds."""
+    """Run a trial, a campaign of trials, or a vehicle that sets out, and say what holds."""
     chosen = engine_named(engine)
     _allow(hardware, network, hang_after, keep_going)
     changes = changes_of(settings, choices, vehicle, autopilot)
@@ -119,7 +120,7 @@ def run(
     if jobs is not None or resume or keep or cluster:
         said = "--jobs, --resume, --keep and --cluster"
         raise InputError(f"{said} work with a campaign; a trial is one run")
-    refuse_rig(trial)
+    trial, changes = with_vehicle(trial, changes)
     loaded = load_trial(trial, changes=changes, origin="--set")
     loaded = loaded.failing([read_fault(text, "--fault") for text in faults or []], "--fault")
     loaded = _paced(loaded, pace).recording(record, "--record")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable
 from pathlib import Path
 
 from rich.markup import escape
@@ -18,6 +19,8 @@ _PLACEHOLDER = "@NAME@"
 _NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_-]{0,39}")
 _RESERVED = re.compile(r"con|prn|aux|nul|(com|lpt)[0-9]", re.IGNORECASE)
 """Names that Windows keeps for devices."""
+_ADDED = ".add"
+_TABLE = re.compile(r"^\s*(\[[^\]\n]+\])", re.M)
 
 
 def texts(name: str, kind: str, part: str = "") -> dict[Path, str]:
@@ -45,8 +48,38 @@ def checked_name(name: str) -> str:
 def write(files: dict[Path, str], about: str, steps: list[tuple[str, str]]) -> None:
     """Write texts below the current folder; print that, and commands with their purpose.
 
-    Raises InputError for a file that is there, and for one that would hide a shipped one.
+    A text whose path ends in ``.add`` goes to the end of the file before it, which must be there
+    without the tables that it has. Raises InputError for another file that is there, and for one
+    that would hide a shipped one.
     """
+    added = {path.with_suffix(""): text for path, text in files.items() if path.suffix == _ADDED}
+    files = {path: text for path, text in files.items() if path.suffix != _ADDED}
+    _refuse_existing(files)
+    for path, text in added.items():
+        _refuse_adding(path, text)
+    for path, text in files.items():
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text, "utf-8", newline="\n")
+    for path, text in added.items():
+        with path.open("a", encoding="utf-8", newline="\n") as file:
+            file.write(text)
+    answer.result = {"files": [str(path) for path in [*files, *added]]}
+    _say("wrote", files)
+    if added:
+        _say("added to", added)
+    console.print(f"{about}. Next:")
+    width = max(len(command) for command, _ in steps)
+    for command, purpose in steps:
+        console.print(f"  {escape(command.ljust(width))}  {purpose}", soft_wrap=True)
+
+
+def _say(done: str, paths: Iterable[Path]) -> None:
+    console.print(done)
+    for path in paths:
+        console.print(f"  {escape(str(path))}", soft_wrap=True)
+
+
+def _refuse_existing(files: Iterable[Path]) -> None:
     folders = {parent for path in files for parent in path.parents}
     there = [path for path in files if path.exists() or path.is_symlink()]
     there += [folder for folder in folders if folder.exists() and not folder.is_dir()]
@@ -58,17 +91,19 @@ def write(files: dict[Path, str], about: str, steps: list[tuple[str, str]]) -> N
             f"nothing is written: seatrial ships {_listed(hidden)}, which yours would hide: take "
             "another name"
         )
-    for path, text in files.items():
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text(text, "utf-8", newline="\n")
-    answer.result = {"files": [str(path) for path in files]}
-    console.print("wrote")
-    for path in files:
-        console.print(f"  {escape(str(path))}", soft_wrap=True)
-    console.print(f"{about}. Next:")
-    width = max(len(command) for command, _ in steps)
-    for command, purpose in steps:
-        console.print(f"  {escape(command.ljust(width))}  {purpose}", soft_wrap=True)
+
+
+def _refuse_adding(path: Path, text: str) -> None:
+    """Raise InputError unless a file takes the tables of ``text``."""
+    if not path.is_file():
+        raise InputError(
+            f"nothing is written, for there is no {path} to add to: seatrial new vehicle "
+            f"{path.stem} writes one"
+        )
+    there = path.read_text("utf-8")
+    for table in _TABLE.findall(text):
+        if table in _TABLE.findall(there):
+            raise InputError(f"nothing is written, for {path} has a table {table} already")
 
 
 def _is_shipped(path: Path) -> bool:

@@ -30,6 +30,9 @@ from .expressions import (
 )
 from .ports import Port
 
+_Run = tuple[slice, slice]
+"""Where ports side by side have their values, among all and among their own, stacked."""
+
 InputFunction = Callable[[float, SimpleNamespace], Mapping[str, Any]]
 
 
@@ -94,6 +97,8 @@ class Plant(Component):
     input_ports: ClassVar[tuple[Port, ...]] = ()
     output_ports: ClassVar[tuple[Port, ...]] = ()
     """Outputs that are not states."""
+    _state_runs: ClassVar[tuple[_Run, ...]] = ()
+    _output_runs: ClassVar[tuple[_Run, ...]] = ()
     parameter_ports: ClassVar[tuple[Port, ...]] = ()
     """Numbers that the equations take."""
     _texts: ClassVar[tuple[str, ...]] = ()
@@ -118,6 +123,7 @@ class Plant(Component):
         cls.output_ports = tuple(
             p for p in ports if p.kind == "output" and not isinstance(p, State)
         )
+        cls._state_runs, cls._output_runs = _runs(cls.state_ports), _runs(cls.output_ports)
         # What a role says of is not the equations': the sea, a seed.
         parameters = [p for p in ports if isinstance(p, Parameter) and not p.role]
         cls._texts = tuple(p.name for p in parameters if p.type is str)
@@ -161,11 +167,11 @@ class Plant(Component):
 
     def outputs(self, t: float) -> None:
         """Publish the states and what follows from them and the inputs."""
-        self._publish(self.state_ports, self._x.tolist())
+        self._publish(self._state_runs, self._x.tolist())
         if self.output_ports:
             self._load()
             self._buffers["out"][1]()
-            self._publish(self.output_ports, self._y.tolist())
+            self._publish(self._output_runs, self._y.tolist())
 
     def set_state(self, state: Mapping[str, Any]) -> None:
         """Restore what `get_state` returned."""
@@ -368,11 +374,9 @@ class Plant(Component):
         if self._has_tunables:
             self._p[:] = self._stacked_p()
 
-    def _publish(self, ports: Sequence[Port], stacked: list[float]) -> None:
-        place = 0
-        for port in ports:
-            self.values[port.offset : port.offset + port.size] = stacked[place : place + port.size]
-            place += port.size
+    def _publish(self, runs: Sequence[_Run], stacked: list[float]) -> None:
+        for there, here in runs:
+            self.values[there] = stacked[here]
 
     def _start_state(self) -> Vector:
         starts = [self.ports[f"{s.name}_start"] for s in self.state_ports]
@@ -413,6 +417,23 @@ class Plant(Component):
         port = self.ports[name]
         first = port.offset - self._u_slice.start
         return slice(first, first + port.size)
+
+
+def _runs(ports: Sequence[Port]) -> tuple[_Run, ...]:
+    """Return the runs of ports, as long as they can be: they are copied many times a second."""
+    runs: list[_Run] = []
+    place = 0
+    for port in ports:
+        first = port.offset
+        if runs and runs[-1][0].stop == first:
+            first -= runs[-1][0].stop - runs[-1][0].start
+            runs.pop()
+        end = port.offset + port.size
+        runs.append(
+            (slice(first, end), slice(place + port.size - (end - first), place + port.size))
+        )
+        place += port.size
+    return tuple(runs)
 
 
 def _is_row(value: Any) -> bool:

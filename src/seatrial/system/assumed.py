@@ -34,7 +34,7 @@ _ELLIPSE = math.pi / 4.0
 def give_assumed(part: Part) -> None:
     """Give a craft at the surface what follows from its shape and is not given."""
     body, variables = part.shape, part.instance.variables
-    if body is None or "section_beam.s0" not in variables or not _is_at_surface(part):
+    if body is None or "section_beam.s0" not in variables or not is_at_surface(part):
         return
     file = f"{body.path.name} [shape] {body.table}"
     hulls = _hulls(body.parts)
@@ -170,7 +170,8 @@ def _windage(parts: Sequence[ShapePart], waterline: float) -> dict[str, float]:
     }
 
 
-def _is_at_surface(part: Part) -> bool:
+def is_at_surface(part: Part) -> bool:
+    """Return whether a component has no form of restoring, or one of a craft at the surface."""
     if "restoring" not in part.instance.variables:
         return True
     return str(_value(part, "restoring")).startswith("surface")

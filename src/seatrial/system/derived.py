@@ -18,6 +18,7 @@ from .entries import (
 )
 from .expressions import Value, bare_name, evaluate, is_expression
 from .quantities import amount, dimension, in_unit
+from .wildcards import expanded
 
 Tables = Mapping[str, Mapping[str, WrittenEntry]]
 
@@ -38,7 +39,10 @@ class Entries:
     """
 
     def __init__(self, tables: Tables, presets: Tables, where: str) -> None:
-        self._tables = {**tables, **{f"presets.{place}": p for place, p in presets.items()}}
+        self._tables = {
+            **expanded(tables, where),
+            **{f"presets.{place}": p for place, p in presets.items()},
+        }
         self._where = where
         self._open: list[tuple[str, str]] = []
 

@@ -17,12 +17,15 @@ FORMATS = (".glb", ".stl")
 _MOST_BYTES = 20_000_000
 _LARGEST = 10_000.0
 """Of a length, m."""
+_STRONGEST = 1e8
+"""Of the value that a length follows, in SI: the thrust of a ship, N."""
 
 _Number = Annotated[float, Field(ge=-_LARGEST, le=_LARGEST, allow_inf_nan=False)]
 _Length = Annotated[float, Field(gt=0.0, le=_LARGEST, allow_inf_nan=False)]
 _Depth = Annotated[float, Field(ge=0.0, le=_LARGEST, allow_inf_nan=False)]
 _Vector = Annotated[list[_Number], Field(min_length=3, max_length=3)]
 _Size = Annotated[list[_Length], Field(min_length=3, max_length=3)]
+_Value = Annotated[float, Field(gt=0.0, le=_STRONGEST, allow_inf_nan=False)]
 _Point = Annotated[list[_Number], Field(min_length=2, max_length=2)]
 _Colour = Annotated[str, StringConstraints(pattern="^#[0-9a-fA-F]{6}$")]
 _Name = Annotated[str, StringConstraints(pattern=r"^[A-Za-z][\w-]*$")]
@@ -85,7 +88,7 @@ class Stretch(FileModel):
     """A length along the part's x, from its origin on, that follows a port: a jet of water."""
 
     port: str
-    full: _Length
+    full: _Value
     """Value, in SI, at which the part has the length that is written; negative ones mirror it."""
 
 

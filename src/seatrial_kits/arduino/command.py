@@ -49,7 +49,7 @@ def new(
     ],
 ) -> None:
     """Write a sketch with its profile, rig and trial that run at once, below the current folder."""
-    sketch = texts(checked_name(name), "usv", "harness/firmware")
+    sketch = texts(checked_name(name), "sketch-of", "harness/firmware")
     steps = [
         (f"seatrial run {name}", "on the shipped catamaran"),
         (f"seatrial run {name} --set autopilot.mega.backend=simavr", "its firmware"),

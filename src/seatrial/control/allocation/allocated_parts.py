@@ -42,8 +42,9 @@ class AllocatedParts(PropulsorSlots, FoilSlots):
         used = [number for number in range(len(self._kinds)) if max(thrusts[number]) > 0.0]
         self._turning = [number for number in used if self._turns(number)]
         self._fixed = [number for number in used if number not in self._turning]
-        kinds = read_kinds(self.foils, "foil", FOILS)
-        self._foils = [number for number, kind in enumerate(kinds) if kind in STEERING]
+        self._foil_kinds = read_kinds(self.foils, "foil", FOILS)
+        self._foils = [n for n, kind in enumerate(self._foil_kinds) if kind in STEERING]
+        self._check_linear_fins()
         self._ranges = [list(ends) for ends in self.propulsor_angle_limit]
         self._angles = [self._at_rest(number) for number in range(COUNT)]
         self._reaches = [_reach(*thrust) for thrust in thrusts]
@@ -95,6 +96,14 @@ class AllocatedParts(PropulsorSlots, FoilSlots):
                     "about z has a horizontal one"
                 )
 
+    def _check_linear_fins(self) -> None:
+        for number, kind in enumerate(self._foil_kinds):
+            if kind == "linear-fin" and not self.foil_lift[number] > 0.0:
+                raise InputError(
+                    f"{self.name}.foil_lift_{number + 1} is {self.foil_lift[number]!r}, of a "
+                    "linear-fin: more than 0 is needed"
+                )
+
     def _check_axes(self, columns: Array) -> None:
         """Raise InputError unless the parts give each of ``axes`` without the others."""
         if columns.size and not self._rows:
@@ -129,9 +138,14 @@ class AllocatedParts(PropulsorSlots, FoilSlots):
 
     def _lift(self, number: int) -> Array:
         """Return the wrench of a foil at share 1, per pascal."""
-        area, slope = self.foil_area[number], lift_slope(self.foil_aspect_ratio[number])
-        most: float = area * slope * self.foil_angle_limit[number]
+        most: float = self.foil_area[number] * self._slope(number) * self.foil_angle_limit[number]
         return most * lift_wrench(self.foil_position[number], self.foil_roll[number])
+
+    def _slope(self, number: int) -> float:
+        """Return the lift coefficient of a foil by its angle, 1/rad."""
+        own: float = self.foil_lift[number]
+        is_linear = self._foil_kinds[number] == "linear-fin"
+        return own if is_linear else float(lift_slope(self.foil_aspect_ratio[number]))
 
 
 def _reach(ahead: float, astern: float) -> tuple[float, float]:

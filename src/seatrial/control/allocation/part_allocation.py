@@ -50,8 +50,9 @@ class PartAllocation(AllocatedParts, Sampled):
     than ``idle_share`` to give keeps its angle.
 
     **Foils** give rho/2 u^2 A C_L' delta each, u = ``speed`` ahead through the water, C_L' of
-    their aspect ratio (`lift_slope`), their direction that of `lift_wrench`. Slower than
-    ``steerage_speed``, or astern, they lie amidships. Sails are not allocated: their angle is 0.
+    their aspect ratio (`lift_slope`), or ``foil_lift`` of a linear-fin, their direction that of
+    `lift_wrench`. Slower than ``steerage_speed``, or astern, they lie amidships. Sails are not
+    allocated: their angle is 0.
 
     X ahead, Y to starboard, Z down positive, N; K starboard down, M bow up, N to starboard
     positive, N.m; about the body origin. Angles rad: a propulsor's about z from x to y.
@@ -61,9 +62,9 @@ class PartAllocation(AllocatedParts, Sampled):
     Not modelled: moments of shafts, flow that a part meets from another, stall.
 
     Raises InputError at the start for an axis that is no unit vector, or is not horizontal where
-    it turns, for angles out of order, for a propeller or jet without ``propulsor_thrust``, for
-    ``axes`` that name none though there are parts, and for one that the parts cannot give, or
-    only together with another one.
+    it turns, for angles out of order, for a propeller or jet without ``propulsor_thrust``, for a
+    linear-fin without ``foil_lift``, for ``axes`` that name none though there are parts, and for
+    one that the parts cannot give, or only together with another one.
     """
 
     exercised: ClassVar = {

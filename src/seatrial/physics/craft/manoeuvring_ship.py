@@ -20,6 +20,7 @@ from .planar import (
     sea_load,
     water_outputs,
 )
+from .polynomials import polynomial
 from .wave_hull import HullCoefficients
 
 _SURGE_TERMS = ("u", "uu", "uuu", "vv", "rr", "rv", "dd", "udd", "vd", "uvd")
@@ -168,10 +169,7 @@ def _cubic(nu: Any, rudder: Any, p: SimpleNamespace) -> Any:
     u, v, r = ca.vertsplit((nu - ca.vertcat(p.speed, 0, 0)) / scale)
     factors = {"u": u, "v": v, "r": r, "d": rudder}
     X, Y, N = (
-        sum(
-            coefficient * _product(term, factors)
-            for term, coefficient in zip(terms, ca.vertsplit(coefficients), strict=True)
-        )
+        polynomial(terms, coefficients, factors)
         for terms, coefficients in (
             (_SURGE_TERMS, p.X),
             (_SWAY_TERMS, p.Y),
@@ -186,14 +184,6 @@ def _pulled(load: Any, p: SimpleNamespace) -> Any:
     scale = ca.vertcat(1, 1, p.length)
     nu_dot = ca.solve(_mass_matrix(p), load / scale) / scale / (0.5 * p.water_density * p.length**3)
     return ca.vertcat(0, nu_dot[1:]) if p.model == "linear" else nu_dot
-
-
-def _product(term: str, factors: Mapping[str, Any]) -> Any:
-    """Return the product that a coefficient's name spells: "vvr" is v v r."""
-    product = 1.0
-    for factor in term if term != "const" else "":
-        product = product * factors[factor]
-    return product
 
 
 def _mass_matrix(p: SimpleNamespace) -> Any:

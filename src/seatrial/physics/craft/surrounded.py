@@ -84,13 +84,13 @@ class SurroundedPlant(Plant):
         if self._around is None:
             super().outputs(t)
             return
-        self._publish(self.state_ports, self._x.tolist())
+        self._publish(self._state_runs, self._x.tolist())
         if self.output_ports:
             self._load()
             self._bound.inputs[:] = self._u
             self._bound.around[0] = self._around
             self._bound.publish()
-            self._publish(self.output_ports, self._y.tolist())
+            self._publish(self._output_runs, self._y.tolist())
 
     def set_state(self, state: Mapping[str, Any]) -> None:
         """Restore what `get_state` returned."""

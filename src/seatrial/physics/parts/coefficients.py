@@ -50,7 +50,6 @@ class PropulsorCoefficients(PropulsorSlots):
 class FoilCoefficients(FoilSlots):
     """Mix-in: coefficients of lift and drag; see `fins`, `rudder` and `sail`."""
 
-    foil_lift = _f(0.0, "1/rad", "lift coefficient by angle (linear-fin)", min=0.0)
     foil_profile_drag = _f(0.0065, "1", "drag coefficient at no lift (fin)", min=0.0)
     foil_crossflow_drag = _f(0.8, "1", "coefficient of the flow round the tip (fin)", min=0.0)
     foil_stall = _f(0.4, "rad", "angle of attack from which on it stalls (fin)", min=1e-3)

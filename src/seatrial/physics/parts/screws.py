@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from types import SimpleNamespace
 from typing import Any
 
 import casadi as ca
@@ -80,14 +81,30 @@ def _harmonics(coefficients: Any, cos: Any, sin: Any) -> Any:
 
 def _over_advance(c: Context, drive: Drive, K_T: Sequence[Any], K_Q: Sequence[Any]) -> Push:
     """Return the push of curves of K_T and K_Q, coefficients of 1, J, J^2 and on."""
-    s, (n, rate) = drive.slot, _shaft(drive)
+    n, rate = _shaft(drive)
     advance = _advance(c, drive)
-    J = held(advance / (ca.fmax(n, _STOPPED) * s.diameter), 0, s.advance_limit)
-    scale = c.parameters.density * n * ca.fabs(n) * s.diameter**4
+    thrust, moment = open_water(drive.slot, c.parameters.density, n, advance, (K_T, K_Q))
+    return _screwed(drive, thrust, moment, rate, advance)
+
+
+def open_water(
+    slot: SimpleNamespace,
+    density: Any,
+    n: Any,
+    advance: Any,
+    curves: tuple[Sequence[Any], Sequence[Any]],
+) -> tuple[Any, Any]:
+    """Return thrust T, N, and moment Q, N.m, of `propeller` by its ``curves`` of K_T and K_Q.
+
+    ``n`` is the shaft speed, 1/s, negative in reverse, ``advance`` V_a, m/s; ``slot`` has
+    ``diameter``, m, and ``advance_limit``.
+    """
+    J = held(advance / (ca.fmax(n, _STOPPED) * slot.diameter), 0, slot.advance_limit)
+    scale = density * n * ca.fabs(n) * slot.diameter**4
     thrust, moment = (
-        scale * ca.if_else(n > 0, _polynomial(curve, J), curve[0]) for curve in (K_T, K_Q)
+        scale * ca.if_else(n > 0, _polynomial(curve, J), curve[0]) for curve in curves
     )
-    return _screwed(drive, thrust, moment * s.diameter, rate, advance)
+    return thrust, moment * slot.diameter
 
 
 def _polynomial(coefficients: Sequence[Any], x: Any) -> Any:

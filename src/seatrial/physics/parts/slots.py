@@ -141,6 +141,7 @@ class FoilSlots(Component):
     foil_roll = _f(0.0, "rad", "of the span about x, from -z towards y")
     foil_area = _f(0.01, "m2", "area of the planform", min=1e-9)
     foil_aspect_ratio = _f(2.0, "1", "effective aspect ratio: span squared over area", min=1e-3)
+    foil_lift = _f(0.0, "1/rad", "lift coefficient by angle (linear-fin)", min=0.0)
     foil_angle_limit = _f(0.6, "rad", "largest angle to either side", min=0.0)
     foil_angle_rate = _f(0.0, "rad/s", "largest rate of the angle; 0: no limit", min=0.0)
     foil_time_constant = _f(0.0, "s", "lag of the angle, 0 for none", min=0.0)

@@ -104,7 +104,10 @@ class Home(FileModel):
 
 
 class Actuator(FileModel):
-    """One output channel: pulse widths in s, and the port that it drives."""
+    """One output channel: pulse widths in s, and the port that it drives.
+
+    The defaults are those of speed controllers' and servos' components.
+    """
 
     channel: int = Field(
         ge=1, le=32, title="1 to 32", description="output channel, one per actuator"
@@ -112,10 +115,12 @@ class Actuator(FileModel):
     port: Annotated[str, _like(_PORT, "port_thruster.pulse")] = Field(
         title="`component.port`", description="the port that the channel drives, one per actuator"
     )
-    pulse_min: _Pulse = Field(title=_PULSE, description="pulse of one end")
-    pulse_neutral: _Pulse = Field(title=_PULSE, description="pulse that stops it, or of the middle")
+    pulse_min: _Pulse = Field(default=1.1e-3, title=_PULSE, description="pulse of one end")
+    pulse_neutral: _Pulse = Field(
+        default=1.5e-3, title=_PULSE, description="pulse that stops it, or of the middle"
+    )
     pulse_max: _Pulse = Field(
-        title=_PULSE, description="pulse of the other end; the three must rise"
+        default=1.9e-3, title=_PULSE, description="pulse of the other end; the three must rise"
     )
     reversed: bool = Field(False, title="`true` or `false`", description="it acts the other way")
     source: str = Field("", title="text", description="data sheet, or that it is assumed")

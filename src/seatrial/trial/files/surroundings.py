@@ -11,6 +11,7 @@ from ...errors import InputError
 from ...physics.sea.current import TIDES
 from ...physics.sea.currents import LAYERS
 from ...physics.sea.parameters import MeetsCurrent, MeetsWaves, MeetsWind
+from ...system.assumed import is_at_surface
 from ...system.files import FileModel
 from ...system.system import System
 
@@ -136,12 +137,18 @@ def set_surroundings(
 ) -> None:
     """Give the parameters of ``group`` to all components that have them.
 
-    The seed is the run's unless it is given. Raises InputError for a rig without such a
-    component, a value that does not fit, or a sea that cannot be.
+    The seed is the run's unless it is given. A wind that nothing in the rig meets, as above a
+    submerged vehicle, is a note. Raises InputError for a rig without a component that meets waves
+    or current, a value that does not fit, or a sea that cannot be.
     """
     meeting = [
-        name for name, part in system.parts.items() if part.instance.variables.of_role(group)
+        name
+        for name, part in system.parts.items()
+        if part.instance.variables.of_role(group) and (group != "wind" or is_at_surface(part))
     ]
+    if not meeting and group == "wind":
+        system.notes.append(f"{where}: nothing in the rig meets it")
+        return
     if not meeting:
         raise InputError(f"{where}: no component of the rig meets {_MET[group]}")
     given = entry.parameters(where)

@@ -1,0 +1,1 @@
+"""Whole vehicle files proposed from main particulars."""
