@@ -30,7 +30,8 @@ class Manoeuvre(Sampled):
     **Approach.** The pilot holds the heading that it has (its mode ``stabilize``, depth too in
     ``depth-hold``, by ``approach_mode``) with the manual control ``speed`` ahead, so that the
     order changes nothing but the helm. It is steady when the means over both halves of the last
-    ``window`` differ by no more than 1 % of the speed or 0.02 m/s, and 1 deg of the heading.
+    ``window`` differ by no more than 1 % of the speed or 0.02 m/s, and 1 deg of the heading;
+    before a depth step, 0.05 m of the depth too.
 
     **Orders.** Then the mode is manual: manual yaw is the helm order,
 
@@ -150,7 +151,7 @@ class Manoeuvre(Sampled):
             self._done = True
             return
         if self._number == 0:
-            self._ordered_at = t + self.period
+            self._ordered_at = round(t + self.period, 9)
             self._turned -= self._mean("heading")
             self._fast = self._mean("speed")
         self._number += 1
@@ -197,7 +198,10 @@ class Manoeuvre(Sampled):
         """Return whether the approach or the order has come to its end."""
         order = self._order()
         if order is None:
-            return self._is_steady("heading", 0.0, _HEADING) and self._is_moving_steadily()
+            level = self.kind != "depth-step" or self._is_steady("depth", 0.0, _DEPTH)
+            return (
+                level and self._is_steady("heading", 0.0, _HEADING) and self._is_moving_steadily()
+            )
         if order.until == SLOW:
             share = self.slow if order.speed == 0.0 else 0.0
             return self._speed() <= share * self._fast
