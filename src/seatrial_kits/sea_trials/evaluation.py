@@ -39,6 +39,10 @@ class Done:
     """Length of the ship, m."""
     beam: float | None = None
     """Beam of its outline, m."""
+    helm: float | None = None
+    """Helm that was ordered, where that is known."""
+    full_helm: float = math.radians(35.0)
+    """The most helm that there is."""
 
     @property
     def first(self) -> float | None:
@@ -60,10 +64,18 @@ def figures_of(done: Done) -> Figures:
 
 
 def criteria_name(done: Done) -> str:
-    """Return the name under which `imo` has the figures: that of the trial."""
-    if done.kind != "zig-zag":
-        return done.kind
-    return f"zig-zag-{math.degrees(done.heading):g}"
+    """Return the name under which `imo` has the figures: that of the trial.
+
+    It has those of turning circles at full helm, of initial turning and zig-zags with a helm equal
+    to the heading change; where the helm is known to be another, the name says it.
+    """
+    angle = f"{math.degrees(done.heading):g}"
+    usual = {"turning-circle": done.full_helm, "initial-turning": math.radians(10.0),
+             "zig-zag": done.heading}.get(done.kind)  # fmt: skip
+    name = f"zig-zag-{angle}" if done.kind == "zig-zag" else done.kind
+    if done.helm is None or usual is None or math.isclose(done.helm, usual, rel_tol=1e-6):
+        return name
+    return f"{name} with a helm of {math.degrees(done.helm):g} deg"
 
 
 def approach_speed_of(done: Done, figures: Figures) -> float:

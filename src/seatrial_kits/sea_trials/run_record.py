@@ -60,6 +60,8 @@ def done_in(run: Run) -> Done:
         share=float(values["slow"]),
         depth=depth,
         length=_length(_entry(run, craft)),
+        helm=min(float(values["helm"]), float(values["full_helm"])),
+        full_helm=float(values["full_helm"]),
         beam=_entry(run, craft).get("outline", {}).get("beam"),
     )
 

@@ -5,6 +5,7 @@ import math
 import pytest
 
 from seatrial.errors import InputError
+from seatrial_kits.sea_trials.evaluation import Done, criteria_name
 from seatrial_kits.sea_trials.figures.criteria import (
     first_overshoot_limit,
     imo,
@@ -49,3 +50,20 @@ def test_a_wide_circle_fails():
 def test_a_ship_without_a_speed_is_refused():
     with pytest.raises(InputError, match="above 0"):
         imo({}, 320.0, 0.0)
+
+
+@pytest.mark.parametrize(
+    ("kind", "helm", "heading", "name"),
+    [
+        ("turning-circle", 35.0, 10.0, "turning-circle"),
+        ("turning-circle", 15.0, 10.0, "turning-circle with a helm of 15 deg"),
+        ("zig-zag", 20.0, 20.0, "zig-zag-20"),
+        ("zig-zag", 20.0, 10.0, "zig-zag-10 with a helm of 20 deg"),
+        ("initial-turning", 10.0, 10.0, "initial-turning"),
+        ("crash-stop", 35.0, 10.0, "crash-stop"),
+    ],
+)
+def test_criteria_are_for_the_helm_that_they_name(kind, helm, heading, name):
+    done = Done(kind, record("kvlcc2_full_turn_m35"), helm=math.radians(helm),
+                heading=math.radians(heading))  # fmt: skip
+    assert criteria_name(done) == name

@@ -147,3 +147,13 @@ def test_a_helm_order_that_is_over_from_the_first_row_is_the_first_order():
     for number, at in enumerate(FIGURES[name]["figures"]["execute_times_exact"]):
         ordered[rec.time >= at] = math.radians(20.0) * (-1.0) ** (number + 1)
     assert_as_reference(name, figures(name, replace(rec, helm=ordered)))
+
+
+def test_noise_of_the_compass_does_not_look_like_a_turn():
+    name = "kvlcc2_full_zigzag_20_20"
+    rec = record(name)
+    noise = math.radians(0.3) * np.random.default_rng(1).standard_normal(len(rec.time))
+    found = figures(name, replace(rec, heading=rec.heading + noise))
+    expected = FIGURES[name]["figures"]["time_to_first_execute"]
+    # The heading turns by 0.45 deg/s there: 2 s of it are three deviations of the noise.
+    assert found["initial_turning_time"] == pytest.approx(expected, abs=2.5)

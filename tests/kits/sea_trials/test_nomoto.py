@@ -69,11 +69,11 @@ def test_scaled_values(zig_zag):
     assert lag == pytest.approx(LAG * SPEED / LENGTH, rel=1e-3)
 
 
-def test_with_heading_noise_within_three_percent_and_intervals_that_cover(zig_zag):
+def test_with_heading_noise_within_half_a_percent_and_intervals_that_cover(zig_zag):
     noise, seeds = math.radians(0.3), 200
     found = [nomoto(record(zig_zag, noise, seed)) for seed in range(seeds)]
     worst = max(max(abs(each.K / GAIN - 1.0), abs(each.T / LAG - 1.0)) for each in found)
-    assert worst < 0.03
+    assert worst < 0.005
     for index, true in enumerate((GAIN, LAG)):
         values = [(each.K, each.T)[index] for each in found]
         inside = sum(

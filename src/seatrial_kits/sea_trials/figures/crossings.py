@@ -21,6 +21,8 @@ _STRAIGHT = 1e-3
 """rad/s; a rate of turn within which every approach is straight."""
 _APPROACH = 60.0
 """Length of the approach that must be straight, s."""
+_LEAST = 4
+"""Rows of heading that show a rate."""
 _LOW, _HIGH = 0.02, 0.1
 """Shares of the first change of helm through which its ramp is extended back to the order."""
 
@@ -64,8 +66,8 @@ def order_time(record: Record) -> float:
     """Return the instant of the order, s: when the helm begins to leave its first value.
 
     A helm that moves at a rate is extended back along its ramp; a helm order that steps is given
-    at the row with its new value. Without helm, or
-    with one that is over from the beginning, the order is at the first row.
+    at the row with its new value. Without helm, or with one that is over from the beginning, the
+    order is at the first row.
     """
     if record.helm is None or _is_over(record):
         return record.start
@@ -92,16 +94,18 @@ def order_time(record: Record) -> float:
 def check_approach(record: Record, order: float) -> None:
     """Raise InputError if the record starts in a turn.
 
-    The rate of turn over the last 60 s before the order, or at the order where nothing is
-    recorded before, must be within a tenth of the largest rate of the record, or 1e-3 rad/s.
+    The rate of turn must be within a tenth of the largest rate of the record, or 1e-3 rad/s: that
+    at the order, or that of the line through the heading over the last 60 s before (through the
+    first four rows where less is recorded before) less two of its standard deviations.
     """
     before = (record.time <= order) & (record.time >= order - _APPROACH)
-    if before.sum() >= 4:
-        rate = float(np.polyfit(record.time[before] - order, record.heading[before], 1)[0])
-    else:
-        rate = float(record.course_kept(order, 1))
+    if before.sum() < _LEAST:
+        before = record.time <= record.time[_LEAST - 1]
+    line, covariance = np.polyfit(record.time[before] - order, record.heading[before], 1, cov=True)
+    mean = abs(float(line[0])) - 2.0 * math.sqrt(float(covariance[0, 0]))
+    rate = min(mean, abs(float(record.course_kept(order, 1))))
     fastest = float(np.abs(record.course_kept(record.time, 1)).max())
-    if abs(rate) > max(_LATE * fastest, _STRAIGHT):
+    if rate > max(_LATE * fastest, _STRAIGHT):
         raise InputError(
             f"the record starts in a turn: {math.degrees(rate):.3g} deg/s at the order, at "
             f"{order:g} s; up to a tenth of the largest rate, {math.degrees(fastest):.3g} deg/s, "
