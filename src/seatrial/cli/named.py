@@ -50,9 +50,10 @@ def with_vehicle(name: str, changes: dict[str, Any]) -> tuple[str, dict[str, Any
 
 def _trial_under(autopilot: str) -> str:
     """Return the trial for every vehicle that has an autopilot, else the one of its pilot."""
-    for name, path in available("harness/trials").items():
-        is_for_every = name.startswith(_FOR_EVERY)
-        if is_for_every and _content(path).get("choices", {}).get("autopilot") == autopilot:
+    trials = available("harness/trials").items()
+    for_every = [(name, path) for name, path in trials if name.startswith(_FOR_EVERY)]
+    for name, path in for_every if autopilot else ():
+        if _content(path).get("choices", {}).get("autopilot") == autopilot:
             return name
     return _SETTING_OUT
 
