@@ -217,7 +217,7 @@ def test_values_are_converted_to_what_the_entry_and_the_port_say(value) -> None:
     assert given(value('"= marine-craft.blades"'), "blades")["blades"].value == 3
     assert given(value('"= 2 * marine-craft.blades"'), "blades")["blades"].value == 6
     assert given(value('"= marine-craft.law"'), "law")["law"].value == "polynomial"
-    with pytest.raises(InputError, match=r"here: unit 'kg' cannot be converted to 'rad/s'"):
+    with pytest.raises(InputError, match=r"here: rate: unit 'kg' cannot be converted to 'rad/s'"):
         given(value('"= 2 * marine-craft.mass"'), "rate")
 
 

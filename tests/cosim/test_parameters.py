@@ -216,8 +216,8 @@ def test_a_value_in_the_ports_own_unit_is_not_touched(load) -> None:
 @pytest.mark.parametrize(
     ("port", "values", "message"),
     [
-        ("mass", {"unit": "m"}, "here: unit 'm' cannot be converted to 'kg'"),
-        ("mass", {"unit": "kgg"}, "here: 'kgg' is not a unit"),
+        ("mass", {"unit": "m"}, "here: mass: unit 'm' cannot be converted to 'kg'"),
+        ("mass", {"unit": "kgg"}, "here: mass: 'kgg' is not a unit"),
         ("mass", {"value": "much"}, r"here: a number in kg is needed, found 'much'"),
         ("mass", {"value": [1, 2]}, r"here: 1 values are needed \(mass\), found 2"),
         ("pad", {"value": [1, 2], "unit": "m"}, r"3 values are needed \(pad\.x, pad\.y, pad\.z\), found 2"),
@@ -258,7 +258,7 @@ def test_a_preset_stands_for_a_whole_port(load) -> None:
         ("strn", r"o: unknown preset 'strn'; did you mean 'stern'"),
         ("abeam", r"o: unknown preset 'abeam'; \(known: .*bow, heavy, short, stern\)"),
         ("short", r"o, preset 'short': 3 values are needed .*, found 2"),
-        ("heavy", r"o, preset 'heavy': unit 'kg' cannot be converted to 'm'"),
+        ("heavy", r"o, preset 'heavy': pad\.x: unit 'kg' cannot be converted to 'm'"),
         ("5 s", r"o: unit 's' cannot be converted to 'm'"),
         (["1 m", "2 m"], r"o: 3 values are needed \(pad\.x, pad\.y, pad\.z\), found 2"),
         (["1 m", "2 m", "bow"], r"o: 'bow' is not a quantity"),

@@ -13,6 +13,7 @@ from ..errors import InputError, unmatched
 from ..model.readable import number
 from ..plugins import offered
 from ..system.assembly import assemble
+from ..system.fitted_parts import vacant
 from ..system.flattening import load_rig
 from ..system.forgotten import forgotten
 from ..system.packages import is_package, read_package
@@ -100,6 +101,7 @@ def _print_rig(system: System, pattern: str, every: bool) -> None:
     width = max((len(joint.source) for joint in joints), default=0)
     lines = [f"{joint.source:{width}} -> {joint.target}{_transformed(joint)}" for joint in joints]
     alone, derived = forgotten(system), _derived(system, pattern)
+    empty = vacant(system)
     lists = {
         f"{len(lines)} connections": lines,
         "not made": system.open,
@@ -110,7 +112,9 @@ def _print_rig(system: System, pattern: str, every: bool) -> None:
             if name not in alone and _matches(pattern, name)
         ],
         "optional inputs that nothing feeds": [
-            name for name in system.unconnected_inputs(optional=True) if _matches(pattern, name)
+            name
+            for name in system.unconnected_inputs(optional=True)
+            if name not in alone and name not in empty and _matches(pattern, name)
         ],
         "in Python, also with --engine native": [
             f"{', '.join(names)}: {why}" for why, names in python.items()

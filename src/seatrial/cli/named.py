@@ -9,6 +9,7 @@ from ..errors import InputError, unknown
 from ..reading import toml_content
 from ..shipped import available
 from ..system.packages import is_package
+from ..vehicle_folders import FOLDERS, place_in
 
 _MOST_NAMED = 8
 _AUTOPILOT, _VEHICLE = "choices.autopilot", "choices.vehicle"
@@ -28,12 +29,14 @@ def with_vehicle(name: str, changes: dict[str, Any]) -> tuple[str, dict[str, Any
 
     A vehicle's name means the trial for every vehicle under the autopilot that is chosen, else
     the one in which it sets out. A trial of that name comes first. Raises InputError for a rig's
-    name, with its trials, and for a name that is none, with those like it.
+    name, with its trials, for a vehicle's file that cannot be read, and for a name that is none,
+    with those like it.
     """
     trials = available("harness/trials")
     if name in trials or name.endswith(".toml") or is_package(name):
         return name, changes
-    if name in _vehicles():
+    here = place_in(Path.cwd() / FOLDERS, "harness/rigs", f"vehicles/{name}")
+    if here is not None or name in _vehicles():
         trial = _trial_under(str(changes.get(_AUTOPILOT, "")))
         return trial, {_VEHICLE: name, **changes}
     if name in available("harness/rigs"):

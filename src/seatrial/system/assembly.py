@@ -10,12 +10,15 @@ from ..vehicle_folders import FOLDERS
 from .bonds import bonds_of
 from .component_parameters import followed, give_parameters, vehicles_of
 from .connecting import connect
+from .fitted_parts import require_thrusts
 from .loading import load_part
+from .mounting import far_off
 from .profile.profile import Profiles
 from .rig import Rig
 from .shape_ports import resolve_shapes
 from .system import Engine, System
 from .tuning import connect_tunables
+from .unasked_axes import unasked
 
 
 def assemble(
@@ -45,6 +48,7 @@ def assemble(
             written = followed(system, scope, setting.written, f"{setting.origin}: {setting.key}")
             system.set(*setting._replace(written=written))
         _refuse_idle_variant(system)
+        require_thrusts(system)
         connect(system)
         system.bonds = bonds_of(system)
         for name, placed in rig.components.items():
@@ -55,7 +59,7 @@ def assemble(
         system.discard()
         raise
     system.notes += _undecided(system)
-    system.notes += _in_several_folders(rig)
+    system.notes += _in_several_folders(rig) + far_off(system) + unasked(system)
     return system
 
 

@@ -8,6 +8,7 @@ from collections.abc import Container, Iterable
 from ..errors import InputError
 from ..fmi.instance import Variable
 from ..model.units import unit
+from .fitted_parts import uncommanded
 from .paths import split_path
 from .system import System
 
@@ -19,7 +20,8 @@ def forgotten(system: System, moved: Container[str] = ()) -> dict[str, str]:
     """Return notes on the forces, moments and commands that nothing feeds, by their inputs.
 
     A force or moment is known by its unit, a command by its role. A sum of forces is meant where
-    no force reaches its component. Inputs that are ``moved`` otherwise are left out.
+    no force reaches its component. The parts of a craft are as `uncommanded` says. Inputs that are
+    ``moved`` otherwise are left out.
     """
     notes = {}
     for path in system.unconnected_inputs():
@@ -29,6 +31,7 @@ def forgotten(system: System, moved: Container[str] = ()) -> dict[str, str]:
         if path not in moved and (what := _what(one)) is not None:
             start = "its start" if one.start is None else _shown(one)
             notes[path] = f"nothing feeds the {what} {path}: it stays at {start}"
+    notes |= uncommanded(system, moved)
     for path, what in _empty_sums(system):
         notes[path] = f"nothing feeds the {what} {path}: none of its terms is connected"
     return notes

@@ -89,7 +89,8 @@ def from_entry(
         if variable.type is not float and named != "1":
             raise InputError(f"{origin}: {variable.name} has no unit, found {named!r}")
         if variable.type is float and not isinstance(value, str):
-            resolved: Value = _converted(float(value), unit, variable, origin)
+            where = f"{origin}: {variable.name}"
+            resolved: Value = _converted(float(value), unit, variable, where)
         elif variable.type is float:
             resolved = _text(variable, value, origin)
         else:

@@ -15,6 +15,7 @@ import numpy as np
 import pytest
 
 from seatrial import Simulation
+from seatrial.cli.templates import texts, write
 from seatrial.system.profile.profile import load_profile
 from tests.command import SEATRIAL, seatrial
 from tests.craft.references import shipped
@@ -52,7 +53,7 @@ def flown(vehicle: str, program: Path, out: str, *more: str) -> Path:
     (program.parent / "trial.toml").write_text(TRIAL)
     done = seatrial(
         "run", "trial.toml", "--vehicle", vehicle, "--autopilot", f"ardupilot={program}",
-        "--out", out, *ANY_PORT, *CHOICES[vehicle], *more,
+        "--out", out, *ANY_PORT, *CHOICES.get(vehicle, ()), *more,
         cwd=program.parent,
     )  # fmt: skip
     assert done.returncode == 0, done.stdout + done.stderr
@@ -125,6 +126,29 @@ def test_a_pulse_above_the_middle_turns_gloria_to_port(program: Path) -> None:
     assert parameters("gloria")["SERVO1_REVERSED"] == 1.0
     row = last_row(flown("gloria", program, "run", "--engine", "direct"))
     assert row["autopilot.sitl.ardupilot.pulse.ch2"] == pytest.approx(1500e-6)  # no pulse is given
+
+
+@pytest.mark.parametrize(
+    ("like", "moved", "least"),
+    [
+        ("usv", "position.x", 0.5),
+        ("rov", "position.y", -0.1),
+        ("auv", "attitude.psi", 0.01),
+        ("azimuth", "attitude.psi", 0.01),
+        ("ship", "attitude.psi", 1e-4),
+    ],
+)
+def test_a_vehicle_of_ones_own_takes_its_pulses(
+    like: str, moved: str, least: float, program: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Channels 1 and 3 above the middle: thrust; of the rov to port; with rudder to starboard."""
+    monkeypatch.chdir(program.parent)
+    for kind in (like, f"ardupilot/{like}"):
+        write(texts("mine", kind), "", [("", "")])
+    options = ("--engine", "direct", "--no-report", "--set", "autopilot.mooring.stiffness=0")
+    row = last_row(flown("mine", program, "run", *options))
+    assert row[f"{NAME}.pulse.ch1"] == pytest.approx(1700e-6)
+    assert row[f"vehicle.hull.{moved}"] / least > 1.0
 
 
 @pytest.mark.parametrize("vehicle", sorted(CHOICES))
