@@ -46,7 +46,7 @@ def place_in(folder: Path, kind: str, name: str) -> Place | None:
     Raises InputError for a file there that cannot be read.
     """
     for place in _meant(folder, kind, name):
-        if place.path.is_file() and (not place.table or _has(place)):
+        if place.path.is_file() and (not place.table or has(place)):
             return place
     return None
 
@@ -109,7 +109,8 @@ def _names(path: Path, kind: str) -> Iterator[str]:
         yield from (f"{vehicle}-{part}" for part in parts)
 
 
-def _has(place: Place) -> bool:
+def has(place: Place) -> bool:
+    """Return whether a file has the table of a place. Raises InputError for one that is no TOML."""
     return place.content(_read(place.path, strict=True)) is not None
 
 

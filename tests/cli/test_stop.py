@@ -330,6 +330,6 @@ def test_a_signal_before_a_command_heeds_any_is_one_message(where: str, tmp_path
         f"run.load_trial = {INTERRUPTED[where]}\n"
         "main()\n"
     )
-    command = [sys.executable, "-c", code, "run", "x"]
+    command = [sys.executable, "-c", code, "run", "square"]
     done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True)
     assert (done.returncode, done.stderr) == (3, "seatrial: stopped\n")

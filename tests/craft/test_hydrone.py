@@ -3,6 +3,9 @@
 Numbers come from the published parameters (source 004) by independent calculation.
 """
 
+import tomllib
+from pathlib import Path
+
 import numpy as np
 import pytest
 from scipy.linalg import expm
@@ -46,10 +49,14 @@ def set_all(component, values):
 
 def test_parameters_are_declared_in_convertible_units_with_their_origin(hydrone):
     classes = {"marine-craft": MarineCraft, "downwash": type(hydrone.downwash("source"))}
-    file = hydrone.parameters
+    path = Path(__file__).parents[2] / "harness" / "vehicles" / "hydrone" / "vehicle.toml"
+    file = tomllib.loads(path.read_text("utf-8"))
     for tables in (file, *file["variants"].values()):
         for table, cls in classes.items():
             for name, entry in tables[table].items():
+                if isinstance(entry, str):  # follows from another one
+                    assert entry.startswith("=")
+                    continue
                 port = cls.ports[name]
                 assert entry["mark"] in ("stated", "corrected", "assumed")
                 assert entry["source"]

@@ -25,7 +25,8 @@ class Command(NamedTuple):
 
 COMMANDS = {
     "run": Command(
-        "seatrial.cli.run:run", "Run a trial, or a campaign of trials, and say what holds."
+        "seatrial.cli.run:run",
+        "Run a trial, a campaign of trials, or a vehicle that sets out, and say what holds.",
     ),
     "convergence": Command(
         "seatrial.cli.convergence:convergence",

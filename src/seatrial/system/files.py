@@ -14,7 +14,7 @@ from ..errors import InputError, unknown
 from ..kits import kits
 from ..reading import toml_content
 from ..shipped import available, provided_folders, provided_place, shipped_folder
-from ..vehicle_folders import FOLDERS, PILOT, VEHICLE, Place, owner, place_in, stem
+from ..vehicle_folders import FOLDERS, PILOT, VEHICLE, Place, has, owner, place_in, stem
 
 Model = TypeVar("Model", bound=BaseModel)
 
@@ -60,8 +60,10 @@ def find_place(kind: str, name: str, relative_to: Path | None = None) -> Place:
         path = ((relative_to or Path.cwd()) / name).resolve()
         if not path.is_file():
             raise InputError(f"there is no file {path}")
-        is_rig = kind == "harness/rigs" and path.name == VEHICLE
-        return Place(path, ("rig",) if is_rig else ())
+        if kind != "harness/rigs" or path.name != VEHICLE:
+            return Place(path)
+        # A rig of anybody's may have that name, too.
+        return Place(path) if has(Place(path, ("components",))) else Place(path, ("rig",))
     if (near := _near(kind, name, relative_to)) is not None:
         return near
     for root in (*_beside(relative_to), Path.cwd()):

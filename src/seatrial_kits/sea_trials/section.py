@@ -7,9 +7,7 @@ from collections.abc import Iterator
 from seatrial.errors import InputError
 from seatrial.trial.records.run_folder import Run
 
-from .drawing import drawings, table
-from .evaluation import figures_of
-from .run_record import done_in, has_manoeuvre
+_COMPONENT = "manoeuvre"
 
 
 def manoeuvre(run: Run) -> Iterator[tuple[str, str]]:
@@ -17,8 +15,16 @@ def manoeuvre(run: Run) -> Iterator[tuple[str, str]]:
 
     A record that does not hold its figures says why, in their place.
     """
+    if all(entry["fmu"] != _COMPONENT for entry in run.manifest["components"].values()):
+        return
+    # Every report asks: those of other runs go without SciPy.
+    from .drawing import drawings, table
+    from .evaluation import figures_of
+    from .run_record import done_in, has_manoeuvre
+
     if not has_manoeuvre(run):
         return
+
     try:
         done = done_in(run)
         found = figures_of(done)

@@ -23,7 +23,7 @@ def test_it_prints_gains_and_leaves_a_page(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("arguments", "expected"),
     [
-        (("hydrone",), "hydrone.toml: a vehicle with a table 'manoeuvring-ship' is needed"),
+        (("hydrone",), "hydrone/vehicle.toml: a vehicle with a table 'manoeuvring-ship' is needed"),
         (("marinr",), "mariner"),
         (("mariner", "--damping", "2"), "damping ratio is 2.0, between 0 and 1"),
         (("mariner", "--variant", "cubed"), "cubic"),

@@ -34,7 +34,10 @@ def test_what_the_thrusters_cannot_do_has_status_1(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("arguments", "expected"),
     [
-        (("hydrone", "--surge", "1 m/s"), "hydrone.toml: a vehicle with a table 'surface-vessel'"),
+        (
+            ("hydrone", "--surge", "1 m/s"),
+            "hydrone/vehicle.toml: a vehicle with a table 'surface-vessel'",
+        ),
         (("videoray-surface", "--surge", "2 kg"), "unit 'kg' cannot be converted to 'm/s'"),
         (("videoray-surface", "--surge", "200 m/s"), "no duration is long enough"),
         (("videoray-surface",), "Missing option '--surge'"),
