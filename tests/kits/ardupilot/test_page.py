@@ -16,7 +16,7 @@ from tests.interop.running import free_port
 ROOT = Path(__file__).parents[3]
 PAGE = ROOT / "docs/kits/ardupilot/autopilots.md"
 COMMANDS = re.findall(r"^\$ (seatrial .*)$", PAGE.read_text("utf-8"), re.MULTILINE)
-HULL, OTHERS = COMMANDS[:3], COMMANDS[3:]
+HULL, OTHERS = COMMANDS[:4], COMMANDS[4:]
 """From nothing to a hull under ArduPilot, and what follows."""
 ANY_PORT = ("--set", "autopilot.sitl.ardupilot.link=udpin:127.0.0.1:0")
 """What a test adds: a port that no other test has."""
@@ -63,5 +63,5 @@ def test_what_the_page_says_runs(command: str, tmp_path: Path) -> None:
 
 
 def test_the_page_has_both_ways_to_start() -> None:
-    assert [("ardupilot=" in c) for c in HULL] == [False, False, True]
+    assert [("ardupilot=" in c) for c in HULL] == [False, False, False, True]
     assert [("ardupilot=" in c) for c in OTHERS] == [True, False]
