@@ -48,7 +48,7 @@ def fin(c: Context, slot: SimpleNamespace, angle: Any) -> Any:
     ahead = ca.vertcat(1, 0, 0)
     cos, sin = ca.cos(angle), ca.sin(angle)
     chord, normal = cos * ahead + sin * across, cos * across - sin * ahead
-    velocity = through_water(c, slot.position)
+    velocity = through_water(c, slot)
     a, b = ca.dot(velocity, chord), ca.dot(velocity, normal)
     lift, drag = coefficients(slot, ca.atan2(-b, ca.fabs(a) + STILL))
     pressure = c.parameters.density / 2 * slot.area * ca.sqrt(a**2 + b**2 + STILL**2)

@@ -14,11 +14,13 @@ from ...model.ports import Output
 from ..craft.hydrodynamics import TERMS
 from ..craft.marine_craft import MarineCraft
 from ..craft.six_dof import craft_context, six_dof_motion
+from ..craft.surrounded import Surroundings
 from .ballast import ballasted, points, surface_weight, volumes
 from .checks import require_parts
 from .coefficients import SORTS, Coefficients, fitted
 from .foils import foil_load
 from .lags import angle_lag, ballast_lag, foil_lag, follow, order_lag
+from .orbital import PARTS_PORTS, AtParts, part_positions, with_waves
 from .propulsors import pushes
 from .screws import ADVANCES
 from .slots import BALLASTS, COUNT, FOILS, PROPULSORS
@@ -45,10 +47,9 @@ class FittedCraft(Coefficients, MarineCraft):
     neither, the order acts at once. ``lagged_*`` are the states of that, and keep their start
     values where nothing lags.
 
-    **Flow.** Each part meets the velocity of its own place through the water, body rates and shear
-    of the current included; waves move the water as at the body origin. ``speed_of_advance`` =
-    "over-ground" has propellers advance at |v| over ground, as some models do: in a current that
-    is wrong.
+    **Flow.** Each part meets the velocity of its own place through the water: body rates, shear of
+    the current and the waves there (`orbital`) included. ``speed_of_advance`` = "over-ground" has
+    propellers advance at |v| over ground, as some models do: in a current that is wrong.
 
     Not modelled: parts that leave the water; one propulsor's race at another; inertia of what
     turns; forces of ballast in motion.
@@ -56,6 +57,7 @@ class FittedCraft(Coefficients, MarineCraft):
     Raises InputError at the start as `checks` and `SixDofCraft` say.
     """
 
+    surrounding_ports: ClassVar = PARTS_PORTS
     exercised: ClassVar = {
         "terms": " ".join(TERMS),
         "restoring": "floating",
@@ -128,11 +130,22 @@ class FittedCraft(Coefficients, MarineCraft):
         require_parts(self)
         super().start(t)
 
+    def met(self) -> Surroundings | None:
+        """Return sea, current and wind around craft and parts, or None. Raises InputError."""
+        around = super().met()
+        if around is None:
+            return None
+        values = SimpleNamespace(**{name: getattr(self, name) for name in self.ports})
+        positions = part_positions(fitted(values, "propulsor"), fitted(values, "foil"))
+        waves, carried = self.sea_state().waves(), not self._is_at_surface
+        return AtParts(around, waves, self.places, positions, carried).at
+
     def equations(
         self, x: SimpleNamespace, u: SimpleNamespace, p: SimpleNamespace
     ) -> tuple[Mapping[str, Any], Mapping[str, Any]]:
         """Return the derivatives of motion and lags, and what motion and parts show."""
         propulsors, foils, ballasts = (fitted(p, sort) for sort in SORTS)
+        propulsors, foils = with_waves(propulsors, 0, u), with_waves(foils, 1, u)
         order = follow([order_lag(each) for each in propulsors], u.propulsor_order, x.lagged_order)
         angle = follow([angle_lag(each) for each in propulsors], u.propulsor_angle, x.lagged_angle)
         foil = follow([foil_lag(each) for each in foils], u.foil_angle, x.lagged_foil)

@@ -30,9 +30,7 @@ def pushes(
 ) -> list[Push]:
     """Return what the propulsors do at their orders (-1 to 1) and angles, rad."""
     return [
-        PUSHES[kind](
-            c, Drive(slot, order, _turned(slot.axis, angle), through_water(c, slot.position))
-        )
+        PUSHES[kind](c, Drive(slot, order, _turned(slot.axis, angle), through_water(c, slot)))
         for (kind, slot), order, angle in zip(parts, orders, angles, strict=True)
     ]
 

@@ -48,8 +48,7 @@ def rudder(c: Context, slot: SimpleNamespace, angle: Any, pushed: Sequence[Push]
     """
     p, across = c.parameters, upright(slot.roll)
     u = slot.wake_ratio * _behind(c, slot, pushed)
-    place = slot.position - ca.vertcat(slot.flow_aft, 0, 0)
-    drift = ca.dot(across, through_water(c, place))
+    drift = ca.dot(across, through_water(c, slot, slot.flow_aft))
     v = straightened(slot, drift)
     slope = _FUJII[0] * slot.aspect_ratio / (slot.aspect_ratio + _FUJII[1])
     force = blade(slot, p.density, slope, angle, (u, v))
@@ -91,7 +90,7 @@ def blade(
 
 def _behind(c: Context, slot: SimpleNamespace, pushed: Sequence[Push]) -> Any:
     """Return u_R / eps behind the propulsor that the slot names, m/s, or behind none."""
-    u, loading = through_water(c, slot.position)[0], 0
+    u, loading = through_water(c, slot)[0], 0
     for number, push in enumerate(pushed, 1):
         behind = ca.eq(slot.behind, number)
         u = ca.if_else(behind, push.advance, u)
