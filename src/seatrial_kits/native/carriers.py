@@ -34,7 +34,7 @@ def why_python(cls: type[Component], values: Mapping[str, Any] | None = None) ->
         for name, value in (values or {}).items():
             component.set(name, value)
         if isinstance(component, Plant):
-            equations.started(component, cls.__name__)
+            equations.require_start(component, cls.__name__)
         else:
             Unit(component).translate()
     except InputError as error:

@@ -40,20 +40,13 @@ def in_python(system: System) -> dict[str, list[str]]:
     What stands in an FMU has a carrier of its own, and is left out.
     """
     from .carriers import why_python
-    from .tables import is_built_in
 
     found: dict[str, list[str]] = {}
     for part in system.parts.values():
         if not isinstance(part.instance, DirectInstance):
             continue
-        cls = type(part.instance.component)
-        scalars = {name: cls.scalar_by_name[name].port for name in part.given}
-        built_in = {
-            name: given.value
-            for name, given in part.given.items()
-            if is_built_in(cls, scalars[name])
-        }
-        if why := why_python(cls, built_in):
+        given = {name: each.value for name, each in part.given.items()}
+        if why := why_python(type(part.instance.component), given):
             found.setdefault(why, []).append(part.name)
     return found
 

@@ -63,16 +63,17 @@ def why_python(plant: type[Plant]) -> str:
         return "it has inputs of text"
     for name in _OWN:
         owner = next(each for each in plant.__mro__ if name in vars(each))
-        # With nothing around them they run on the equations of `Plant`: `started` sees to it.
+        # With nothing around them they run on the equations of `Plant`: `require_start` sees to it.
         if owner not in (Plant, Component) and owner.__name__ != "SurroundedPlant":
             return f"{owner.__name__}.{name} is more than equations"
     return ""
 
 
-def started(plant: Plant, name: str) -> Plant:
-    """Return the plant, started: all its checks are made with the values to build in.
+def require_start(plant: Plant, name: str) -> None:
+    """Start a plant, which makes all its checks.
 
-    Raises InputError for a plant whose start does more than take its start values.
+    Raises InputError for values that it cannot start with, and for a plant whose start does more
+    than take its start values.
     """
     before = [plant.values[s.reference] for s in plant.scalars if s.port.kind == "parameter"]
     try:
@@ -90,7 +91,6 @@ def started(plant: Plant, name: str) -> Plant:
             f"{name}: a native FMU is built in still water and air, found waves, a current or "
             "wind among its parameters"
         )
-    return plant
 
 
 def header(plant: Plant) -> str:

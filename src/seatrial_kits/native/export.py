@@ -26,7 +26,7 @@ from seatrial.model.plant import Plant
 
 from .carriers import checked, refuse
 from .equations import header as plant_header
-from .equations import model, started
+from .equations import model, require_start
 from .selfcheck import refuse_difference
 from .statements import Translation
 from .tables import header
@@ -56,7 +56,8 @@ def build_native_fmu(
     """
     cls = source.component_class()
     refuse(source)
-    sources, own = _sources(partial(_made, source, start_values or {}), source.origin)
+    made = partial(_made, source, start_values or {})
+    sources, own = _sources(made, given or {}, source.origin)
     example = cls(source.name)
     if version == 3:
         sources |= front_sources(example)
@@ -89,13 +90,21 @@ def _made(source: ComponentSource, values: Mapping[str, Any]) -> Component:
     return component
 
 
-def _sources(made: Callable[[], Component], name: str) -> tuple[dict[str, bytes], str]:
-    """Return the sources by file name, but for ``model.h``, and what that has of its own."""
+def _sources(
+    made: Callable[[], Component], given: Mapping[str, Any], name: str
+) -> tuple[dict[str, bytes], str]:
+    """Return the sources by file name, but for ``model.h``, and what that has of its own.
+
+    Whether a plant can start is found out with the values ``given`` before a run, by scalar.
+    """
     folder = Path(fmpy.__file__).parent / "c-code"
     component = made()
     if isinstance(component, Plant):
-        plant = started(component, name)
-        text, own, parts = model(plant), plant_header(plant), ["plant.c"]
+        run = made()
+        for scalar, value in given.items():
+            run.set(scalar, value)
+        require_start(run, name)
+        text, own, parts = model(component), plant_header(component), ["plant.c"]
     else:
         translation = Translation(component)
         checked(made(), name)

@@ -21,6 +21,7 @@ from seatrial.fmi.components.index import component_class, components
 from seatrial.fmi.components.source import find_source
 from seatrial.model.component import Component, Input, Parameter
 from seatrial.model.plant import Plant, State
+from seatrial_kits.native.cached import native_fmu
 from seatrial_kits.native.carriers import why_python
 from seatrial_kits.native.export import build_native_fmu
 from tests.command import seatrial
@@ -193,6 +194,18 @@ def test_a_diverging_step_is_discarded(spring: Slave) -> None:
         for k in range(100):
             spring.fmu.doStep(float(k), 1.0)
     assert "output" in spring.messages[0]
+
+
+def test_numbers_that_a_start_needs_may_come_with_the_run(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    # A propeller without thrust is refused at the start, and 0 is the value that the FMU has.
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    source = find_source("fitted-craft", Path.cwd())
+    propeller = {"propulsors": "propeller", "propulsor_K_T_1.k0": 0.4, "propulsor_K_Q_1.k0": 0.04}
+    with pytest.raises(InputError, match="k0 of more than 0 is needed"):
+        native_fmu(source, {"propulsors": "propeller"})
+    assert zipfile.is_zipfile(native_fmu(source, propeller))
 
 
 def test_what_cannot_be_native_is_refused(tmp_path: Path) -> None:
