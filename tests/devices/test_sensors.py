@@ -187,3 +187,26 @@ def test_depth_at_the_crest_and_in_the_trough_is_none():
         at = {"position": (0.0, 0.0, -elevation), "period": 1.5}
         one = ideal(Depth, sea_spectrum="regular", sea_height=0.4, sea_period=3.0, **at)
         assert run(one, ["depth"], t_ms, 1500)[-1][0] == pytest.approx(0.0, abs=1e-9)
+
+
+def test_reflections_are_correlated_over_their_time():
+    period, T, size = 0.2, 1.0, 1.5
+    gnss = ideal(Gnss, multipath=(size, 0, 0), multipath_time=T, seed=3.0)
+    north = np.array([row[0][0] for row in run(gnss, ["position_n"], 800_000, 200)])
+    # 800 s are some 400 independent values, each of variance s^2: 6 % of it.
+    assert north.std() == pytest.approx(size, rel=0.2)
+    lag = round(T / period)
+    share = np.mean(north[:-lag] * north[lag:]) / north.var()
+    assert share == pytest.approx(math.exp(-1), abs=0.12)
+    assert [ideal(Gnss, multipath=(size, 0, 0)).get("position_n")[i] for i in (1, 2)] == [0.0, 0.0]
+
+
+def test_a_receiver_that_has_surfaced_takes_its_time():
+    gnss = ideal(Gnss, reacquisition=3.0)
+
+    def diving(ms):
+        return {"position": (0, 0, 1.0 if 1000 <= ms < 2000 else -1.0)}
+
+    rows = run(gnss, ["valid"], 8000, 200, diving)
+    lost = [200 * i for i, (valid,) in enumerate(rows) if not valid]
+    assert lost == list(range(1000, 4801, 200))  # under water up to 1800 ms, then 3 s

@@ -52,6 +52,9 @@ class Measured(Derived):
     of a sample's white noise; ``NAME_bias``, constant; ``NAME_instability``, standard deviation
     of a slowly varying bias; ``NAME_resolution``, the quantisation step. ``span`` has the least and
     the greatest value that a broken instrument shows, alike for all axes or per axis.
+
+    With ``bandwidth``, Hz, there is ``NAME_bandwidth``, for which the noise is stated: that of a
+    density N is N sqrt(bandwidth). With ``limit`` there is ``NAME_range``, the largest reading.
     """
 
     ERRORS = ("noise", "bias", "instability", "resolution")
@@ -66,11 +69,14 @@ class Measured(Derived):
         bias: Any = 0.0,
         instability: Any = 0.0,
         resolution: Any = 0.0,
+        bandwidth: float | None = None,
+        limit: float | None = None,
         axes: Sequence[str] | None = None,
         frame: str = "",
         validity: Validity = "",
     ) -> None:
         super().__init__(unit, description, validity=validity, axes=axes, frame=frame)
+        self.bandwidth, self.largest = bandwidth, limit
         self.low: list[float] = self._spread(span[0])
         self.high: list[float] = self._spread(span[1])
         self._errors = dict(zip(self.ERRORS, (noise, bias, instability, resolution), strict=True))
@@ -87,8 +93,20 @@ class Measured(Derived):
             least = None if error == "bias" else 0.0
             text = f"{name}: {meaning[error]}"
             parameter = Parameter(start, self.unit, text, axes=self.axes, min=least)
-            parameter.__set_name__(owner, f"{name}_{error}")
-            setattr(owner, f"{name}_{error}", parameter)
+            self._declare(owner, f"{name}_{error}", parameter)
+        if self.bandwidth is not None:
+            text = f"{name}: bandwidth that the noise is stated for, 0: it is that of a sample"
+            self._declare(
+                owner, f"{name}_bandwidth", Parameter(self.bandwidth, "Hz", text, min=0.0)
+            )
+        if self.largest is not None:
+            text = f"{name}: largest reading of an axis, of either sign, 0 for no limit"
+            self._declare(owner, f"{name}_range", Parameter(self.largest, self.unit, text, min=0.0))
+
+    @staticmethod
+    def _declare(owner: type, name: str, parameter: Parameter) -> None:
+        parameter.__set_name__(owner, name)
+        setattr(owner, name, parameter)
 
 
 class Sensor(Noise, Fallible, Sampled):
@@ -101,7 +119,12 @@ class Sensor(Noise, Fallible, Sampled):
         b_k = a b_(k-1) + instability sqrt(1 - a^2) v_k,   a = exp(-period / correlation_time)
 
     with w, v standard normal and b_0 = instability v_0 (a first-order Gauss-Markov process,
-    stationary from the start); quantised to the nearest multiple of the resolution. It
+    stationary from the start); quantised to the nearest multiple of the resolution, and held
+    within the range of an output that has one. Noise stated for a bandwidth B is
+
+        noise = NAME_noise / sqrt(2 period B)
+
+    of each sample: white noise of one density, whatever the period. The measurement
     appears on the outputs at t_k + delay, or at the first communication point after that, and
     stays until the next; with no delay it appears at t_k itself. Times are counted in whole
     nanoseconds, so that what is published does not depend on the communication step.
@@ -177,10 +200,13 @@ class Sensor(Noise, Fallible, Sampled):
     def reset(self, t: float) -> None:
         """Start with nothing published."""
         self._delay_ns = round(self.delay * NS)
-        self._noise, self._bias, self._instability, self._resolution = (
+        noise, self._bias, self._instability, self._resolution = (
             [v for port in self.measured for v in self._error(port, error)]
             for error in Measured.ERRORS
         )
+        shares = [v for port in self.measured for v in [self._share(port)] * port.size]
+        self._noise = [share * v for share, v in zip(shares, noise, strict=True)]
+        self._range = [v for port in self.measured for v in [self._most(port)] * port.size]
         self._low = [v for port in self.measured for v in port.low]
         self._high = [v for port in self.measured for v in port.high]
         self._kept = math.exp(-self.period / self.correlation_time)
@@ -227,6 +253,17 @@ class Sensor(Noise, Fallible, Sampled):
         value = getattr(self, f"{port.name}_{error}")
         return [value] if port.axes is None else value
 
+    def _share(self, port: Measured) -> float:
+        """Return the noise of a sample, of that which is stated."""
+        if port.bandwidth is None:
+            return 1.0
+        bandwidth: float = getattr(self, f"{port.name}_bandwidth")
+        return 1.0 / math.sqrt(2.0 * self.period * bandwidth) if bandwidth else 1.0
+
+    def _most(self, port: Measured) -> float:
+        """Return the largest reading of an axis, 0 where there is no limit."""
+        return 0.0 if port.largest is None else float(getattr(self, f"{port.name}_range"))
+
     def _draw(self, k: int) -> None:
         """Draw the random numbers of measurement ``k``."""
         n = len(self._bias)
@@ -263,7 +300,8 @@ class Sensor(Noise, Fallible, Sampled):
             ends = zip(values, self._low, self._high, strict=True)
             values = [y + SHARE_WRONG * (high - low) for y, low, high in ends]
         steps = zip(values, self._resolution, strict=True)
-        finished = self.finish([_quantised(y, step) for y, step in steps])
+        read = [_quantised(y, step) for y, step in steps]
+        finished = self.finish([_held(y, most) for y, most in zip(read, self._range, strict=True)])
         measured = [None if x is None else y for x, y in zip(found, finished, strict=True)]
         return [*measured, *self.derive(measured)], self._count + 1, True
 
@@ -345,6 +383,10 @@ def _faulty(fault: Written, axis: int, normal: float, x: float, moment: Moment) 
 
 def _quantised(value: float, step: float) -> float:
     return step * round(value / step) if step else value
+
+
+def _held(value: float, most: float) -> float:
+    return min(max(value, -most), most) if most else value
 
 
 def full_circle(angle: float) -> float:
