@@ -18,6 +18,7 @@ from ...fmi.components.index import component_class
 from ...model.ports import Parameter
 from ..files import FileModel, Source, find_file, read_toml, validated
 from ..tunables import Tunable, TunableEntry, read_tunables
+from .data_sheets import with_data_sheets
 from .file import Actuator, ProfileFile
 from .kinds import GROUPS, keys, of_a_kind, section_model
 
@@ -255,6 +256,9 @@ def _parsed(
     mistakes: list[str] = []
     groups: dict[str, dict[str, Any]] = {}
     strange: dict[str, str] = {}
+    sensors, wrong = with_data_sheets(content.get("sensors", {}), path)
+    mistakes += [f"{path}: {mistake}" for mistake in wrong]
+    content = {**content, "sensors": sensors}
     for group in GROUPS:
         groups[group], wrong, unknown_kinds = of_a_kind(group, content.get(group, {}))
         mistakes += [f"{path}: {mistake}" for mistake in wrong]

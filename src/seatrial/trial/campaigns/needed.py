@@ -11,6 +11,7 @@ from ...kits import kits
 from ...shipped import content_of, shipped_folder
 from ...system.files import find_file, read_toml
 from ...system.parameters import split_reference
+from ...system.profile.data_sheets import data_sheets_of
 from ...system.rig import Rig
 from ...vehicle_folders import FOLDERS
 from .campaign import Campaign
@@ -56,6 +57,7 @@ def _of_components(rig: Rig) -> Iterator[Path]:
         own, _, section = (placed.entry.profile or "").rpartition(":")
         if profile := own or (section and placed.scope.file.profile):
             yield from _found("hil_profiles", profile, folder)
+            yield from data_sheets_of(find_file("hil_profiles", profile, folder))
 
 
 def _found(kind: str, name: str, folder: Path) -> Iterator[Path]:
