@@ -200,3 +200,33 @@ def test_what_a_current_does_not_reach_is_noted(trial, tmp_path):
         "current: it does not reach drifter.current: set or connect it"
     ]
     assert noted(SEA) == []
+
+
+def test_swells_are_a_list(trial, tmp_path):
+    swell = 'swell = [{ height = "40 cm", period = "12 s", direction = "90 deg" }]'
+    loaded = trial(SEA.replace(" }", f", {swell} }}"))
+    ship = parameters(loaded, tmp_path)["ship"]
+    assert [ship[f"sea_swell_height.s{k}"] for k in (1, 2, 3)] == [0.4, 0.0, 0.0]
+    assert ship["sea_swell_direction.s1"] == pytest.approx(np.pi / 2)
+    assert ship["sea_swell_gamma.s1"] == 7.0
+    titles = [title for title, _ in sea_figures(load_run(tmp_path / "run"))]
+    assert any("Hs 0.64" in title for title in titles)  # of both: sqrt(0.5^2 + 0.4^2)
+
+
+def test_a_swell_may_be_alone(trial, tmp_path):
+    loaded = trial('[[sea.swell]]\nheight = "1 m"\nperiod = "12 s"\n')
+    ship = parameters(loaded, tmp_path)["ship"]
+    assert (ship["sea_spectrum"], ship["sea_swell_height.s1"]) == ("none", 1.0)
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ('[[sea.swell]]\nheight = "3 m"\nperiod = "3 s"\n', r"swell 1: height 3 m at a period of"),
+        ('[[sea.swell]]\nheight = "3 m"\n', r"sea\.swell\.0\.period|sea\.swell.*period"),
+        ("[sea]\nswell = []\n", r"sea\.swell"),
+    ],
+)
+def test_what_is_wrong_with_a_swell(trial, text, message):
+    with pytest.raises(InputError, match=message):
+        prepare(trial(text), "direct", Hooks())

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import zlib
+from collections.abc import Iterable
 
 import numpy as np
 
@@ -13,8 +14,14 @@ from .numbers import GRAVITY, Array, require_positive
 PLACE, PHASE, DIRECTION, AMPLITUDE = range(4)
 """Streams of draws of a band."""
 
+TOLD_APART = math.pi / 3600.0
+"""Width of bands, rad/s, half of what an hour tells apart: the energy of hours with drawn amplitudes
+varies as in a Gaussian sea, within a tenth."""
+
 _OFFSET = 2**20
 """Added to a band's index, so that it counts from above 0."""
+_MOST_PARTS = 2**11
+"""Of a band, in the index of its parts."""
 
 
 def bands(low: float, high: float, per_octave: int) -> range:
@@ -34,7 +41,23 @@ def edges(indices: range, per_octave: int) -> Array:
     return np.exp2(np.arange(indices.start, indices.stop + 1) / per_octave)
 
 
-def draws(kind: str, seed: int, stream: int, indices: range) -> Array:
+def divided(indices: range, per_octave: int, is_high: Array) -> tuple[list[int], Array]:
+    """Return indices and edges of the bands, those that ``is_high`` names in narrow parts.
+
+    Parts are no wider than `TOLD_APART`, and depend on the place of the band alone.
+    """
+    ends = edges(indices, per_octave)
+    keys: list[int] = []
+    found: list[Array] = []
+    for j, low, high, parts in zip(indices, ends[:-1], ends[1:], is_high, strict=True):
+        wanted = math.ceil((high - low) / TOLD_APART) if parts else 1
+        count = min(wanted, _MOST_PARTS)
+        keys += [_MOST_PARTS * j + i for i in range(count)]
+        found.append(low + (high - low) * np.arange(count) / count)
+    return keys, np.concatenate([*found, ends[-1:]])
+
+
+def draws(kind: str, seed: int, stream: int, indices: Iterable[int]) -> Array:
     """Return a uniform number, 0 to 1, of each band; it depends on nothing but the arguments.
 
     Keyed as `Noise` is: Philox with seed and ``kind`` as its key and the index as its counter,
@@ -51,9 +74,11 @@ def draws(kind: str, seed: int, stream: int, indices: range) -> Array:
     )
 
 
-def frequencies(kind: str, seed: int, indices: range, per_octave: int) -> Array:
-    """Return the frequency drawn in each band, rad/s: a sum of them does not repeat."""
-    at = edges(indices, per_octave)
+def frequencies(kind: str, seed: int, indices: Iterable[int], at: Array) -> Array:
+    """Return the frequency drawn in each band, rad/s: a sum of them does not repeat.
+
+    ``at`` are the edges of the bands, rad/s.
+    """
     return np.asarray(at[:-1] + np.diff(at) * draws(kind, seed, PLACE, indices))
 
 

@@ -12,7 +12,7 @@ from ...model.component import Component, Parameter
 from .current import TIDES
 from .currents import LAYERS, CurrentState
 from .currents import PROFILES as CURRENT_PROFILES
-from .seastate import NONE, SPECTRA, SPREADINGS, SeaState
+from .seastate import AMPLITUDES, NONE, SPECTRA, SPREADINGS, SWELLS, SeaState
 from .winds import PROFILES as WIND_PROFILES
 from .winds import SPECTRA as WIND_SPECTRA
 from .winds import WindState
@@ -20,6 +20,7 @@ from .winds import WindState
 _SEED_MAX = 2.0**53
 _State = TypeVar("_State", SeaState, CurrentState, WindState)
 _AXES = [f"l{i}" for i in range(1, LAYERS + 1)]
+_SWELL_AXES = [f"s{i}" for i in range(1, SWELLS + 1)]
 _Declared = Callable[..., Any]
 _sea: _Declared = partial(Parameter, role="sea")
 _current: _Declared = partial(Parameter, role="current")
@@ -43,11 +44,25 @@ class MeetsWaves(Component):
         "cos-2s", "1", "cos^2s of half the angle, or cos^n of the angle", choices=SPREADINGS
     )
     sea_seed = _sea(1.0, "1", "seed of the waves (a whole number)", min=0.0, max=_SEED_MAX)
-    sea_components_per_octave = _sea(20.0, "1", "waves per octave of frequency", min=1.0, max=200.0)
+    sea_components_per_octave = _sea(
+        20.0, "1", "waves per octave; 0: as many as hours that vary need", min=0.0, max=200.0
+    )
     sea_highest = _sea(
         0.0, "rad/s", "highest frequency; 0: 2 Hz, or 5 times the peak's if more", min=0.0
     )
     sea_depth = _sea(0.0, "m", "depth of the water under the waves; 0: deep", min=0.0)
+    sea_amplitudes = _sea(
+        "fixed", "1", "of the spectrum, or Rayleigh-distributed about it", choices=AMPLITUDES
+    )
+    sea_swell_height = _sea(
+        0.0, "m", "significant wave height of swells beside the sea", axes=_SWELL_AXES, min=0.0
+    )
+    sea_swell_period = _sea(0.0, "s", "their peak periods", axes=_SWELL_AXES, min=0.0)
+    sea_swell_direction = _sea(0.0, "rad", "where they go to", axes=_SWELL_AXES)
+    sea_swell_gamma = _sea(7.0, "1", "their peak enhancement", axes=_SWELL_AXES, min=1.0)
+    sea_swell_spreading = _sea(
+        0.0, "1", "their exponents s of cos-2s; 0: one direction", axes=_SWELL_AXES, min=0.0
+    )
 
     def sea_state(self) -> SeaState:
         """Return the sea that the parameters say. Raises InputError for a sea that cannot be."""

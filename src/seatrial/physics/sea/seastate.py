@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import NamedTuple
 
 from ...errors import InputError, unknown
 from .numbers import GRAVITY
@@ -15,10 +16,11 @@ from .spectra import (
     Spectrum,
     Tma,
     Torsethaugen,
+    Trains,
     pierson_moskowitz_of_height,
 )
 from .spreading import Spreading, cos_2s, cos_n
-from .waves import Waves, irregular, regular
+from .waves import Waves, irregular, regular, together
 
 NONE = "none"
 HIGHEST = 4.0 * math.pi
@@ -37,6 +39,30 @@ _SPECTRA: dict[str, Callable[[SeaState], Spectrum]] = {
 SPECTRA = (NONE, "regular", *_SPECTRA)
 _SPREADINGS: dict[str, Callable[[float], Spreading]] = {"cos-2s": cos_2s, "cos-n": cos_n}
 SPREADINGS = tuple(_SPREADINGS)
+
+
+AMPLITUDES = ("fixed", "drawn")
+SWELLS = 3
+"""Most swells beside a sea, as forecasts have them."""
+
+
+class Swell(NamedTuple):
+    """A train of waves from elsewhere: JONSWAP, cos-2s."""
+
+    number: int
+    height: float
+    """Hs, m."""
+    period: float
+    """Tp, s."""
+    direction: float
+    """Where it goes to, rad from north."""
+    gamma: float
+    spreading: float
+
+    @property
+    def spectrum(self) -> Jonswap:
+        """Return its spectrum. Raises InputError for one that cannot be."""
+        return Jonswap(self.height, self.period, self.gamma)
 
 
 @dataclass(frozen=True)
@@ -64,11 +90,33 @@ class SeaState:
     """Highest frequency, rad/s; 0: as `HIGHEST` says."""
     depth: float = 0.0
     """Depth of the water, m; 0: deep."""
+    amplitudes: str = "fixed"
+    """One of `AMPLITUDES`: those of the spectrum, or Rayleigh-distributed about them."""
+    swell_height: tuple[float, ...] = ()
+    """Hs of each swell beside the sea, m, 0 of none."""
+    swell_period: tuple[float, ...] = ()
+    swell_direction: tuple[float, ...] = ()
+    swell_gamma: tuple[float, ...] = ()
+    swell_spreading: tuple[float, ...] = ()
+    """Exponent s of cos-2s, 0 for one direction."""
+
+    @property
+    def swells(self) -> tuple[Swell, ...]:
+        """The swells that there are, in order."""
+        rows = zip(
+            self.swell_height,
+            self.swell_period,
+            self.swell_direction,
+            self.swell_gamma,
+            self.swell_spreading,
+            strict=True,
+        )
+        return tuple(Swell(n, *row) for n, row in enumerate(rows, 1) if row[0])
 
     @property
     def is_calm(self) -> bool:
-        """Say that there is no sea."""
-        return self.spectrum == NONE
+        """Say that there is no sea and no swell."""
+        return self.spectrum == NONE and not self.swells
 
     @property
     def water_depth(self) -> float:
@@ -76,11 +124,12 @@ class SeaState:
         return self.depth or math.inf
 
     def spectrum_of_it(self) -> Spectrum | None:
-        """Return the spectrum; None of a regular wave or of no sea."""
+        """Return the spectrum, swells included; None of a regular wave alone or of no sea."""
         self._check()
-        if self.spectrum in (NONE, "regular"):
-            return None
-        return _SPECTRA[self.spectrum](self)
+        trains: list[Spectrum] = [swell.spectrum for swell in self.swells]
+        if (own := self._own()) is not None:
+            trains.insert(0, own)
+        return Trains(tuple(trains)) if len(trains) > 1 else next(iter(trains), None)
 
     def waves(self) -> Waves | None:
         """Return the waves, or None if there is no sea."""
@@ -90,10 +139,20 @@ class SeaState:
         """Return the highest frequency of the waves, rad/s."""
         return self.highest or max(HIGHEST, 5.0 * max(spectrum.peaks))
 
+    def _own(self) -> Spectrum | None:
+        """Return the spectrum of the sea without its swells."""
+        return None if self.spectrum in (NONE, "regular") else _SPECTRA[self.spectrum](self)
+
     def _check(self) -> None:
         if self.spectrum not in SPECTRA:
             raise InputError(unknown("spectrum", self.spectrum, SPECTRA))
-        if self.is_calm:
+        if self.amplitudes not in AMPLITUDES:
+            raise InputError(unknown("amplitudes", self.amplitudes, AMPLITUDES))
+        for swell in self.swells:
+            _require_steep(f"swell {swell.number}: ", swell.height, swell.period)
+        if self.seed != int(self.seed):
+            raise InputError(f"seed is {self.seed!r}, a whole number is needed")
+        if self.spectrum == NONE:
             return
         if not self.height > 0.0:
             raise InputError(f"height is {self.height!r} m, more than 0 is needed in a sea")
@@ -103,36 +162,66 @@ class SeaState:
                     f"period is {self.period!r} s, but the height of a pierson-moskowitz sea fixes "
                     "its period: leave it out, or take bretschneider"
                 )
-        elif not self.period > 0.0:
-            raise InputError(f"period is {self.period!r} s, more than 0 is needed: Tp of the sea")
-        steepness = math.tau * self.height / (GRAVITY * self.period**2) if self.period else 0.0
-        if steepness > _STEEPEST:
-            raise InputError(
-                f"height {self.height:g} m at a period of {self.period:g} s is a steepness of "
-                f"{steepness:.2g}, and waves break at {_STEEPEST:.2g}: period is Tp, in s"
-            )
+        else:
+            _require_steep("", self.height, self.period)
         if self.spectrum == "tma" and not self.depth:
             raise InputError("depth is 0, and a tma sea is one of a depth: give it")
         if self.spectrum == "regular" and self.spreading:
             raise InputError("spreading: a regular wave has one direction")
-        if self.seed != int(self.seed):
-            raise InputError(f"seed is {self.seed!r}, a whole number is needed")
+
+
+def _require_steep(which: str, height: float, period: float) -> None:
+    """Raise InputError for a sea without a period, or one that breaks."""
+    if not period > 0.0:
+        raise InputError(f"{which}period is {period!r} s, more than 0 is needed: Tp of the sea")
+    steepness = math.tau * height / (GRAVITY * period**2)
+    if steepness > _STEEPEST:
+        raise InputError(
+            f"{which}height {height:g} m at a period of {period:g} s is a steepness of "
+            f"{steepness:.2g}, and waves break at {_STEEPEST:.2g}: period is Tp, in s"
+        )
 
 
 @lru_cache(16)
 def _waves(state: SeaState) -> Waves | None:
-    spectrum = state.spectrum_of_it()
+    whole = state.spectrum_of_it()
     if state.is_calm:
         return None
-    if spectrum is None:
-        return regular(state.height, state.period, state.direction, state.water_depth)
-    spread = _SPREADINGS[state.spreading_form](state.spreading) if state.spreading else None
+    trains = [_swell(state, swell) for swell in state.swells]
+    if (own := state._own()) is not None:
+        assert whole is not None
+        spread = _SPREADINGS[state.spreading_form](state.spreading) if state.spreading else None
+        trains.insert(0, _train(state, "sea", own, state.direction, spread, state.upper(whole)))
+    elif state.spectrum != NONE:
+        one = regular(state.height, state.period, state.direction, state.water_depth)
+        trains.insert(0, one)
+    return together(trains) if len(trains) > 1 else trains[0]
+
+
+def _swell(state: SeaState, swell: Swell) -> Waves:
+    spread = cos_2s(swell.spreading) if swell.spreading else None
+    # The tail of a swell is that of a sea's: 5 times its peak holds all but 0.1 % of m0.
+    high = 5.0 * max(swell.spectrum.peaks)
+    kind = f"swell {swell.number}"
+    return _train(state, kind, swell.spectrum, swell.direction, spread, high)
+
+
+def _train(
+    state: SeaState,
+    kind: str,
+    spectrum: Spectrum,
+    direction: float,
+    spread: Spreading | None,
+    high: float,
+) -> Waves:
     return irregular(
         spectrum,
-        direction=state.direction,
+        direction=direction,
         seed=int(state.seed),
-        high=state.upper(spectrum),
+        high=high,
         spreading=spread,
         depth=state.water_depth,
         per_octave=int(state.components_per_octave),
+        random_amplitudes=state.amplitudes == "drawn",
+        kind=kind,
     )

@@ -276,6 +276,30 @@ class Tma:
         return None
 
 
+@dataclass(frozen=True)
+class Trains:
+    """Spectra of several wave trains at one place: their sum."""
+
+    trains: tuple[Spectrum, ...]
+
+    @property
+    def peaks(self) -> tuple[float, ...]:
+        """Frequencies of the peaks, rad/s, those of the train that has most at its peak first."""
+
+        def most(train: Spectrum) -> float:
+            return float(train.density(np.array(train.peaks[:1]))[0])
+
+        return tuple(peak for train in sorted(self.trains, key=most)[::-1] for peak in train.peaks)
+
+    def density(self, omega: Array) -> Array:
+        """Return S, m2 s, at ``omega`` > 0, rad/s."""
+        return np.asarray(sum(train.density(omega) for train in self.trains))
+
+    def outside(self) -> str | None:
+        """Return what the trains say, or None."""
+        return "; ".join(said for train in self.trains if (said := train.outside())) or None
+
+
 def moment(spectrum: Spectrum, order: int, low: float, high: float) -> float:
     """Return m_n = int w^n S dw, m2 (rad/s)^n, from ``low`` to ``high``, rad/s."""
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -15,6 +16,9 @@ from .dispersion import wave_number
 from .numbers import GRAVITY, Array, Complex, fixed, require_depth, require_positive
 from .spectra import Spectrum, band_energies
 from .spreading import Spreading
+
+_PER_OCTAVE, _HIGH = 20, 0.01
+"""Bands to the octave, and share of the peak above which they are divided, for hours that vary."""
 
 
 @dataclass(frozen=True)
@@ -147,28 +151,45 @@ def irregular(
     depth: float = math.inf,
     per_octave: int = 20,
     random_amplitudes: bool = False,
+    kind: str = "sea",
 ) -> Waves:
     """Return a realisation of ``spectrum``, a component for each band of the fixed lattice.
 
     From half the lowest peak to ``high``, rad/s (`lattice.upper_frequency`), widened to whole
     bands. a = sqrt(2 int S dw) over the band, so that m0 of the range is exact; with
-    ``random_amplitudes`` they are Rayleigh-distributed about it, as in a Gaussian sea. Frequency
-    in the band, phase, and one direction each are drawn by ``seed``. ``direction`` is where the
-    sea goes to, rad. Raises InputError for an empty range.
+    ``random_amplitudes`` they are Rayleigh-distributed about it. With ``per_octave`` 0 they are so,
+    of bands 20 to the octave, in narrow parts (`lattice.divided`) where the density is above a
+    hundredth of its peak: a Gaussian sea, whose hours differ. Frequency in the band, phase, and
+    one direction each are drawn by ``seed``; trains of another ``kind`` have draws of their own.
+    ``direction`` is where the sea goes to, rad. Raises InputError for an empty range.
     """
-    indices = lattice.bands(0.5 * min(spectrum.peaks), high, per_octave)
-    energy = band_energies(spectrum, lattice.edges(indices, per_octave))
+    whole = lattice.bands(0.5 * min(spectrum.peaks), high, per_octave or _PER_OCTAVE)
+    indices: Sequence[int] = whole
+    edges = lattice.edges(whole, per_octave or _PER_OCTAVE)
+    energy = band_energies(spectrum, edges)
+    if not per_octave:
+        density = energy / np.diff(edges)
+        indices, edges = lattice.divided(whole, _PER_OCTAVE, density > _HIGH * density.max())
+        energy = band_energies(spectrum, edges)
 
     def drawn(stream: int) -> Array:
-        return lattice.draws("sea", seed, stream, indices)
+        return lattice.draws(kind, seed, stream, indices)
 
-    if random_amplitudes:
+    if random_amplitudes or not per_octave:
         energy = energy * -np.log1p(-drawn(lattice.AMPLITUDE))
     spread = spreading.angle(drawn(lattice.DIRECTION)) if spreading else np.zeros(len(indices))
     return Waves(
         np.sqrt(2.0 * energy),
-        lattice.frequencies("sea", seed, indices, per_octave),
+        lattice.frequencies(kind, seed, indices, edges),
         direction + spread,
         math.tau * drawn(lattice.PHASE),
         depth,
     )
+
+
+def together(trains: Sequence[Waves]) -> Waves:
+    """Return the waves of all ``trains``, of one water depth, at once."""
+    names = ("amplitude", "omega", "direction", "phase")
+    joined = [np.concatenate([getattr(train, name) for train in trains]) for name in names]
+    amplitude, omega, direction, phase = joined
+    return Waves(amplitude, omega, direction, phase, trains[0].depth)

@@ -83,6 +83,6 @@ def gusts(spectrum: Callable[[Array], Array], seed: int, per_octave: int = 10) -
     energy = integrals(spectrum, lattice.edges(indices, per_octave) / math.tau)
     return Gusts(
         fixed(np.sqrt(2.0 * energy)),
-        fixed(lattice.frequencies("wind", seed, indices, per_octave)),
+        fixed(lattice.frequencies("wind", seed, indices, lattice.edges(indices, per_octave))),
         fixed(math.tau * lattice.draws("wind", seed, lattice.PHASE, indices)),
     )

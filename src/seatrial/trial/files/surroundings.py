@@ -11,6 +11,7 @@ from ...errors import InputError
 from ...physics.sea.current import TIDES
 from ...physics.sea.currents import LAYERS
 from ...physics.sea.parameters import MeetsCurrent, MeetsWaves, MeetsWind
+from ...physics.sea.seastate import SWELLS
 from ...system.assumed import is_at_surface
 from ...system.files import FileModel
 from ...system.system import System
@@ -23,6 +24,16 @@ DOUGLAS = (0.0, 0.05, 0.3, 0.875, 1.875, 3.25, 5.0, 7.5, 11.5, 14.0)
 
 Of degree 9, over 14 m, its lower end.
 """
+
+
+class SwellEntry(FileModel):
+    """A swell beside the sea: JONSWAP, spread by cos-2s."""
+
+    height: Quantity
+    period: Quantity
+    direction: Quantity = 0.0
+    gamma: Quantity = 7.0
+    spreading: Quantity = 0.0
 
 
 class SeaEntry(FileModel):
@@ -40,21 +51,36 @@ class SeaEntry(FileModel):
     components_per_octave: Whole | None = None
     highest: Quantity | None = None
     depth: Quantity | None = None
+    amplitudes: str | None = None
+    swell: list[SwellEntry] | None = Field(default=None, min_length=1, max_length=SWELLS)
 
     def parameters(self, where: str) -> dict[str, Any]:
         """Return the values of the parameters by name; none in a calm sea. Raises InputError."""
-        written = self.model_dump(exclude_none=True, exclude={"douglas"})
+        written = self.model_dump(exclude_none=True, exclude={"douglas", "swell"})
+        if self.swell is not None:
+            written |= _swells(self.swell)
         if self.douglas is not None:
             if self.height is not None:
                 raise InputError(f"{where}: douglas and height both say how high the sea is")
             written["height"] = DOUGLAS[self.douglas]
-            if self.douglas == 0:
+            if self.douglas == 0 and not self.swell:
                 return {}
+        if self.swell and not written.get("height"):
+            written = {"spectrum": "none", **written}
         if "height" not in written and written.get("spectrum") != "none":
             raise InputError(f"{where}: a sea needs its height, or its degree as douglas")
         # A period that nobody gave is that of a fully developed sea.
         written.setdefault("spectrum", "pierson-moskowitz" if self.period is None else "jonswap")
         return written
+
+
+def _swells(swells: list[SwellEntry]) -> dict[str, Any]:
+    """Return the parameters of swells, a value for each that there can be."""
+    unused = [SwellEntry(height=0.0, period=0.0)] * (SWELLS - len(swells))
+    return {
+        f"swell_{key}": [getattr(swell, key) for swell in (*swells, *unused)]
+        for key in SwellEntry.model_fields
+    }
 
 
 class LayerEntry(FileModel):
