@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Annotated
 
@@ -12,30 +13,37 @@ from rich.markup import escape
 from rich.table import Table
 
 from ..model.readable import number
-from ..trial.logs.channels import Channel, Log
+from ..trial.logs.channels import Channel
 from ..trial.logs.common_time import GAP
 from ..trial.logs.formats import FORMATS, format_of, read_log
-from ..trial.logs.quantities import defaults, read_columns
+from ..trial.logs.quantities import defaults, read_columns, series
 from .answer import answer
 from .options import LogColumns, LogFormat
 from .show import console, print_notes, print_table
+
+_MOST_SHOWN = 40
+"""Channels of a log that are all shown."""
 
 
 def log(
     path: Annotated[Path, typer.Argument(metavar="LOG", help="A file, a bag or a run folder.")],
     columns: LogColumns = None,
     format_name: LogFormat = None,
+    every: Annotated[
+        bool, typer.Option("--all", help="Show channels that serve no quantity, of many too.")
+    ] = False,
 ) -> None:
     """Show the channels of a log: units, rates, ranges, gaps, and the quantities they serve."""
     named = read_columns(columns or [])
     name = format_name or format_of(path)
-    found = read_log(path, name, named.get("time"))
-    serving = defaults(found) | {what: column.name for what, column in named.items()}
+    found = read_log(path, name, named.pop("time", None))
     serves: dict[str, list[str]] = {}
-    for what, channel in serving.items():
-        serves.setdefault(channel if channel in found.channels else channel[1:], []).append(what)
-    rows = [_described(each, serves.get(each.name, [])) for each in found.channels.values()]
-    start, end = _span(found)
+    for what, column in {**defaults(found), **named}.items():
+        serves.setdefault(series(found, what, column).channel.name, []).append(what)
+    serving = {channel: found.channels[channel] for channel in serves} or found.channels
+    start, end = _span(serving.values())
+    first = [*serving, *(channel for channel in found.channels if channel not in serving)]
+    rows = [_described(found.channels[channel], serves.get(channel, [])) for channel in first]
     answer.result = {
         "format": name,
         "start": None if found.start is None else found.start.isoformat(),
@@ -44,19 +52,20 @@ def log(
         "channels": rows,
     }
     begun = "" if found.start is None else f", time 0 is {found.start.isoformat()}"
+    title = f"{FORMATS.load(name).title} ({name})"
     console.print(
-        f"{path}: {FORMATS.load(name).title} ({name}), {number(start)} s to {number(end)} s{begun}",
-        soft_wrap=True,
+        f"{path}: {title}, from {number(start)} s to {number(end)} s{begun}", soft_wrap=True
     )
     print_notes(found.notes)
-    print_table(_table(rows))
+    shown = len(rows) if every or len(rows) <= _MOST_SHOWN else len(serving)
+    print_table(_table(rows[:shown]))
+    if shown < len(rows):
+        console.print(f"{len(rows) - shown} more channels: --all shows them", soft_wrap=True)
 
 
-def _span(found: Log) -> tuple[float, float]:
-    times = [each.time for each in found.channels.values() if len(each.time)]
-    if not times:
-        return 0.0, 0.0
-    return float(min(map(np.nanmin, times))), float(max(map(np.nanmax, times)))
+def _span(channels: Iterable[Channel]) -> tuple[float, float]:
+    times = [each.time for each in channels if len(each.time)] or [np.zeros(1)]
+    return min(float(each[0]) for each in times), max(float(each[-1]) for each in times)
 
 
 def _described(channel: Channel, serves: list[str]) -> dict[str, object]:
@@ -77,11 +86,11 @@ def _described(channel: Channel, serves: list[str]) -> dict[str, object]:
 
 def _table(rows: list[dict[str, object]]) -> Table:
     table = Table(box=SIMPLE, padding=(0, 1, 0, 0))
-    table.add_column("channel")
+    table.add_column("channel", no_wrap=True)
     table.add_column("unit")
     for heading in ("values", "rate, Hz", "least", "most", "gaps"):
         table.add_column(heading, justify="right")
-    table.add_column("serves")
+    table.add_column("serves", overflow="fold")
     for row in rows:
         numbers = [row[key] for key in ("values", "rate", "least", "most", "gaps")]
         shown = ["" if each is None else number(float(each)) for each in numbers]  # type: ignore[arg-type]

@@ -47,6 +47,7 @@ QUANTITIES: Mapping[str, Quantity] = {
     "pitch": Quantity("bow up", "rad", most=math.pi / 2),
     "yaw_rate": Quantity("to starboard", "rad/s"),
     "depth": Quantity("of the vessel below the surface, positive down", "m"),
+    "water_depth": Quantity("below the transducer", "m"),
     "power": Quantity("consumed", "W"),
     "command": Quantity("share of full thrust", "1", held=True),
     "port": Quantity("share of full thrust, port", "1", held=True),
@@ -133,15 +134,19 @@ def chosen(
     return found
 
 
-def defaults(log: Log) -> dict[str, str]:
+def defaults(log: Log) -> dict[str, Column]:
     """Return the channel that serves each quantity if the user names none."""
-    found = {what: _default(log, what) for what in QUANTITIES}
-    return {what: column.name for what, column in found.items() if column is not None}
+    found = {what: _default(log, what) for what in QUANTITIES if what != "time"}
+    return {what: column for what, column in found.items() if column is not None}
 
 
 def _default(log: Log, what: str) -> Column | None:
-    names = log.defaults.get(what, ())
-    return next((Column(name) for name in names if _split(log, name)[0] in log.channels), None)
+    """Return the best channel that can serve a quantity and has a value."""
+    for name in log.defaults.get(what, ()):
+        served = log.channels.get(_split(log, name)[0])
+        if served is not None and np.isfinite(served.values).any():
+            return Column(name)
+    return None
 
 
 def series(log: Log, what: str, column: Column, *, units_needed: bool = False) -> Series:
