@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from seatrial.errors import InputError
-from seatrial_kits.sea_trials.figures.turning import turning_circle
 from seatrial.trial.logs.quantities import read_columns
+from seatrial_kits.sea_trials.figures.turning import turning_circle
 from seatrial_kits.sea_trials.log_record import read_record
 
 from .references import FOLDER, columns, record

@@ -59,20 +59,20 @@ def together(
     notes: list[str] = []
     rising = {what: _rising(_within(each, window), notes) for what, each in found.items()}
     main = rising[axis]
-    if all(np.array_equal(each.time, main.time) for each in rising.values()):
-        _check_gaps(main, main.time[0], main.time[-1])
-        values = {what: each.values for what, each in rising.items()}
-        return Together(main.time, values, main.instant, tuple(notes))
-    parts = _cover(rising, {axis, *needed}, notes)
-    first = max(each.time[0] for each in parts.values())
-    last = min(each.time[-1] for each in parts.values())
-    for each in parts.values():
-        _check_gaps(each, first, last)
-    inside = (main.time >= first) & (main.time <= last)
-    if np.count_nonzero(inside) < 2:
+    alike = all(np.array_equal(each.time, main.time) for each in rising.values())
+    parts = rising if alike else _cover(rising, {axis, *needed}, notes)
+    first = max(window[0], *(float(each.time[0]) for each in parts.values()))
+    last = min(window[1], *(float(each.time[-1]) for each in parts.values()))
+    inside = np.flatnonzero((main.time >= first) & (main.time <= last))
+    if not len(inside):
         spans = "; ".join(map(_span, parts.values()))
         raise InputError(f"{main.log.path}: no time is common to {spans}")
+    for each in [main] if alike else parts.values():
+        _check_gaps(each, first, last)
     time, at = main.time[inside], main.at(inside)
+    if alike:
+        values = {what: each.values[inside] for what, each in parts.items()}
+        return Together(time, values, at.instant, tuple(notes))
     if even:
         time = np.arange(time[0], time[-1] + 1e-9, float(np.median(np.diff(time))))
     values = {what: _interpolated(each, time) for what, each in parts.items()}
@@ -121,8 +121,6 @@ def _within(each: Series, window: Window) -> Series:
         raise InputError(
             f"{each.log.path}: {_span(each)}: no value from {window[0]:g} s to {window[1]:g} s"
         )
-    if each.log.table:
-        return each.at(inside)
     return each.at(slice(max(int(inside[0]) - 1, 0), int(inside[-1]) + 2))
 
 

@@ -37,6 +37,9 @@ _INVALID: Mapping[str, tuple[str, Any]] = {
 }
 """Field and value that mark a sentence as invalid."""
 
+KINDS = frozenset({*_FIELDS, "XDR", "ZDA"})
+"""Formatters that have a channel or a time; others are not read."""
+
 DEFAULTS: Mapping[str, tuple[str, ...]] = {
     "latitude": ("GGA.lat", "RMC.lat", "GNS.lat", "GLL.lat"),
     "longitude": ("GGA.lon", "RMC.lon", "GNS.lon", "GLL.lon"),

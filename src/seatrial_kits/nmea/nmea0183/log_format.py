@@ -19,7 +19,7 @@ from seatrial.trial.logs.formats import Format
 from seatrial.trial.logs.quantities import Column
 
 from .codec import decode
-from .log_fields import DEFAULTS, is_valid, values_of
+from .log_fields import DEFAULTS, KINDS, is_valid, values_of
 
 _SENTENCE = re.compile(r"[$!][A-Z0-9]{3,}[^$!*]*\*[0-9A-Fa-f]{2}")
 _TAG_TIME = re.compile(r"\\(?:[^\\*]*,)?c:(\d+)")
@@ -59,7 +59,7 @@ def _read(path: Path, _: Column | None) -> Log:
         start = _date_of(times[0])
     else:
         times, start = _by_epochs(path, lines)
-    samples = Samples()
+    samples, begun = Samples(), float(np.nanmin(times))
     for line, moment in zip(lines, times, strict=True):
         if not is_valid(line.message):
             skipped[f"sentences {line.message.msgID} are marked invalid and left out"] += 1
@@ -67,7 +67,7 @@ def _read(path: Path, _: Column | None) -> Log:
             skipped["sentences before the first time are left out"] += 1
         else:
             for name, (unit, value) in values_of(line.message).items():
-                since = float(moment - np.nanmin(times))
+                since = float(moment) - begun
                 samples.add(name, unit, since, value, line.number, line.message.talker)
     notes = tuple(f"{count} {what}" for what, count in skipped.items())
     return Log(path, "nmea0183", samples.channels(), DEFAULTS, start, notes, row="line")
@@ -78,6 +78,8 @@ def _lines(path: Path, skipped: Counter[str]) -> list[_Line]:
     with path.open(encoding="latin-1") as file:
         for number, line in enumerate(file, 1):
             sentence = _SENTENCE.search(line)
+            if sentence is not None and sentence.group()[3:6] not in KINDS:
+                continue
             message = None if sentence is None else decode(sentence.group().encode("latin-1"))
             if sentence is None or message is None:
                 skipped["lines without a sentence of good checksum are skipped"] += bool(
