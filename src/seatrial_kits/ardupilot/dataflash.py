@@ -6,7 +6,7 @@ import contextlib
 import io
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from datetime import UTC, datetime
+from datetime import datetime
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from seatrial.errors import InputError
 from seatrial.trial.logs.channels import Channel, Log, channel
+from seatrial.trial.logs.clock_times import date_of
 from seatrial.trial.logs.formats import Format
 from seatrial.trial.logs.quantities import Column
 from seatrial_kits.mavlink.logs.log_units import unit_of
@@ -236,7 +237,7 @@ def _start(parts: list[_Messages], begun: float) -> datetime | None:
                 assert part.seconds is not None
                 since = float(part.seconds[row]) - begun
                 unix = DFReaderClock()._gpsTimeToTime(week, ms) - since
-                return datetime.fromtimestamp(unix, UTC)
+                return date_of(unix)
     return None
 
 

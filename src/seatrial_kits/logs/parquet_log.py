@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from dataclasses import replace
-from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
@@ -12,8 +11,10 @@ import numpy as np
 
 from seatrial.errors import InputError, unknown
 from seatrial.trial.logs.channels import Array, Channel, Log, channel
+from seatrial.trial.logs.clock_times import date_of
 from seatrial.trial.logs.formats import Format
 from seatrial.trial.logs.quantities import QUANTITIES, Column, series
+from seatrial.trial.logs.run_log import of_craft
 
 from .parquet_file import INSTALL, TIME
 
@@ -54,7 +55,8 @@ def _read(path: Path, time: Column | None) -> Log:
         ):
             values = column.cast(pa.float64()).to_numpy()
             channels[name] = channel(name, unit, rows, values)
-    served = {what: [what] for what in QUANTITIES}
+    craft = of_craft(channels)
+    served = {what: [what, *craft.get(what, ())] for what in QUANTITIES}
     log = Log(path, "parquet", channels, served, row="row", table=True)
     return _timed(log, time or _time_column({*channels, *dates}), dates)
 
@@ -69,7 +71,7 @@ def _timed(log: Log, time: Column, dates: dict[str, Array]) -> Log:
     if time.name in dates:
         moments = dates[time.name]
         seconds = moments - moments[0] if len(moments) else moments
-        start = datetime.fromtimestamp(moments[0], UTC) if len(moments) else None
+        start = date_of(float(moments[0])) if len(moments) else None
     elif time.name not in log.channels:
         names = [*log.channels, *dates]
         raise InputError(

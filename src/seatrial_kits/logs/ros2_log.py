@@ -6,12 +6,12 @@ import math
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import fields, is_dataclass
-from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
 from seatrial.errors import InputError
 from seatrial.trial.logs.channels import Log, Samples
+from seatrial.trial.logs.clock_times import date_of
 from seatrial.trial.logs.formats import Format
 from seatrial.trial.logs.quantities import Column
 from seatrial.trial.records.quaternions import to_euler
@@ -65,9 +65,7 @@ def _read(path: Path, _: Column | None) -> Log:
             f"{path}: the bag cannot be read: {error or type(error).__name__}; of a recording that "
             "was cut, 'mcap recover' or 'ros2 bag reindex' may save the rest"
         ) from None
-    start = (
-        None if begun is None or begun < _NS * 10**8 else datetime.fromtimestamp(begun / _NS, UTC)
-    )
+    start = None if begun is None else date_of(begun / _NS)
     notes = tuple(f"{count} {what}" for what, count in skipped.items())
     return Log(path, "rosbag2", samples.channels(), served, start, notes)
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import contextlib
 import io
 from collections.abc import Mapping
-from datetime import UTC, datetime
+from datetime import datetime
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +13,7 @@ import numpy as np
 
 from seatrial.errors import InputError
 from seatrial.trial.logs.channels import Array, Channel, Log, channel
+from seatrial.trial.logs.clock_times import date_of
 from seatrial.trial.logs.formats import Format
 from seatrial.trial.logs.quantities import Column
 from seatrial.trial.records.quaternions import to_euler
@@ -68,6 +69,7 @@ _UNITS: Mapping[str, tuple[float, str]] = {
 """Factor and unit of fields (PX4's msg/*.msg); a ULog does not say them."""
 _MOST_DELAY_US = 1_000_000
 """From a sample to its message; beyond, the field is not set."""
+_TURN = ("q[0]", "q[1]", "q[2]", "q[3]")
 _FIX_2D = 2
 _VALID = {"vehicle_local_position": ("xy_valid", 1), "vehicle_gps_position": ("fix_type", _FIX_2D)}
 """Field, and its least value, without which a position is none."""
@@ -105,7 +107,10 @@ def _read(path: Path, _: Column | None) -> Log:
 def _topic(topic: Any, begun_us: float, notes: list[str]) -> dict[str, Channel]:
     name = topic.name if topic.multi_id == 0 else f"{topic.name}[{topic.multi_id}]"
     fields = {key: np.asarray(values) for key, values in topic.data.items()}
-    stamps = fields.pop("timestamp")
+    stamps = fields.pop("timestamp", None)
+    if stamps is None:
+        notes.append(f"the topic {name} has no times, and is left out")
+        return {}
     sampled = fields.pop("timestamp_sample", stamps)
     delay = stamps.astype(np.int64) - sampled.astype(np.int64)
     measured = np.where((delay >= 0) & (delay < _MOST_DELAY_US), sampled, stamps)
@@ -132,8 +137,9 @@ def _topic(topic: Any, begun_us: float, notes: list[str]) -> dict[str, Channel]:
 
 def _derived(topic: str, fields: Mapping[str, Array]) -> dict[str, tuple[str, Array]]:
     """Return unit and values of what several fields of a topic make."""
-    if topic == "vehicle_attitude":
-        angles = to_euler(np.column_stack([fields[f"q[{k}]"] for k in range(4)]))
+    turn = [fields[key] for key in _TURN if key in fields]
+    if topic == "vehicle_attitude" and len(turn) == len(_TURN):
+        angles = to_euler(np.column_stack(turn))
         return dict(zip(("roll", "pitch", "yaw"), (("rad", each) for each in angles), strict=True))
     if topic == "battery_status" and {"voltage_v", "current_a"} <= fields.keys():
         return {"power": ("W", fields["voltage_v"] * fields["current_a"])}
@@ -146,7 +152,7 @@ def _start(read: Any) -> datetime | None:
         utc = topic.data.get("time_utc_usec", ()) if "gps" in topic.name else ()
         for row in np.flatnonzero(utc)[:1]:
             unix_us = float(utc[row]) - float(topic.data["timestamp"][row]) + read.start_timestamp
-            return datetime.fromtimestamp(unix_us / 1e6, UTC)
+            return date_of(unix_us / 1e6)
     return None
 
 

@@ -69,7 +69,7 @@ def figures(
         -math.inf if start is None else _quantity("from", start, "s"),
         math.inf if end is None else _quantity("to", end, "s"),
     )
-    read = _read(log, manoeuvre, read_columns(columns or []), format_name, window)
+    read = _read(log, manoeuvre, read_columns(columns or []), format_name, window, bool(order))
     done = _with(read, length, heading, depth, order or [])
     found = figures_of(done)
     beside = None if compare is None else figures_of(done_in(load_run(compare)))
@@ -123,6 +123,7 @@ def _read(
     columns: dict[str, Column],
     format_name: str | None,
     window: Window,
+    ordered: bool,
 ) -> Done:
     if (log / MANIFEST).is_file():
         if manoeuvre is not None or columns or format_name is not None or window != WHOLE:
@@ -133,6 +134,11 @@ def _read(
     if manoeuvre is None:
         raise InputError(f"--manoeuvre: one of {', '.join(FIGURES)} is needed")
     record, notes = read_record(log, columns, format_name, window)
+    if record.helm is None and not ordered:
+        notes += (
+            f"no helm is read: the order is taken to be given at {record.start:g} s, the first "
+            "row; --columns helm=NAME:UNIT names its channel, --order the time",
+        )
     print_notes(notes)
     return Done(manoeuvre, record)
 

@@ -10,11 +10,20 @@ import numpy as np
 from .channels import Array
 
 DAY = 86400.0
+_EARLIEST = 1e8
 
 
 def of_day(moment: time) -> float:
     """Return the seconds since midnight of a time of day."""
     return moment.hour * 3600.0 + moment.minute * 60.0 + moment.second + moment.microsecond / 1e6
+
+
+def date_of(unix: float) -> datetime | None:
+    """Return the date and time of a UNIX time; None before 1973: a clock that was not set."""
+    try:
+        return datetime.fromtimestamp(unix, UTC) if unix > _EARLIEST else None
+    except (OverflowError, ValueError):
+        return None
 
 
 def past_midnight(seconds: Sequence[float] | Array) -> Array:

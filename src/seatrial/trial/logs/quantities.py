@@ -188,12 +188,12 @@ def _factor(
     where = f"{log.path}: {log.noun} {found.name!r}"
     if named and found.unit and named != found.unit:
         raise InputError(f"{where}: the file has it in {found.unit}, not {named}")
-    unit = named or found.unit
+    unit = found.unit if named is None else named
     if unit is None and needed:
         raise InputError(f"{where}: a unit is needed: the file does not say it")
-    if quantity.share and unit in ("1", "%"):
+    if quantity.share and unit in ("", "1", "%"):
         return conversion(unit, "1")
     try:
-        return conversion(unit or quantity.unit, quantity.unit)
+        return conversion(quantity.unit if unit is None else unit, quantity.unit)
     except InputError as error:
         raise InputError(f"{where}: {error}") from None

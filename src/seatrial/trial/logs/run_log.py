@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from pathlib import Path
 
 import numpy as np
@@ -30,13 +31,19 @@ def _read(path: Path, _: Column | None) -> Log:
         name: channel(name, run.units[name], run.time, values, rows)
         for name, values in numbers.items()
     }
-    crafts = [name.removesuffix(".attitude.psi") for name in numbers
+    served = of_craft(channels)
+    return Log(path / SIGNALS, "run", channels, served, notes=run.notes, row="line", table=True)
+
+
+def of_craft(names: Iterable[str]) -> dict[str, list[str]]:
+    """Return the signals of a run that serve quantities: the true motion of its craft, in order."""
+    there = list(names)
+    crafts = [name.removesuffix(".attitude.psi") for name in there
               if name.endswith(".attitude.psi")]  # fmt: skip
-    served = {
-        what: [name for craft in crafts if (name := f"{craft}.{port}") in channels]
+    return {
+        what: [name for craft in crafts if (name := f"{craft}.{port}") in there]
         for what, port in _OF_CRAFT.items()
     }
-    return Log(path / SIGNALS, "run", channels, served, notes=run.notes, row="line", table=True)
 
 
 RUN = Format("run folder", lambda path, _: (path / MANIFEST).is_file(), _read)

@@ -6,7 +6,6 @@ import contextlib
 from collections import Counter
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +13,7 @@ import numpy as np
 
 from seatrial.errors import InputError
 from seatrial.trial.logs.channels import Channel, Log, Samples, channel
+from seatrial.trial.logs.clock_times import date_of
 from seatrial.trial.logs.formats import Format
 from seatrial.trial.logs.quantities import Column
 
@@ -101,9 +101,7 @@ def _read(path: Path, _: Column | None) -> Log:
         notes.append(f"{without_fix} messages GPS_RAW_INT without a fix are left out")
     channels = samples.channels(_autopilot(frames))
     channels |= _derived(channels, parameters)
-    return Log(
-        path, "tlog", channels, _DEFAULTS, datetime.fromtimestamp(begun / 1e6, UTC), tuple(notes)
-    )
+    return Log(path, "tlog", channels, _DEFAULTS, date_of(begun / 1e6), tuple(notes))
 
 
 def _frames(data: bytes, skipped: Counter[str]) -> Iterator[_Frame]:

@@ -14,7 +14,7 @@ import numpy as np
 
 from seatrial.errors import InputError
 from seatrial.trial.logs.channels import Array, Log, Samples
-from seatrial.trial.logs.clock_times import of_day, parsed_time, past_midnight
+from seatrial.trial.logs.clock_times import date_of, of_day, parsed_time, past_midnight
 from seatrial.trial.logs.formats import Format
 from seatrial.trial.logs.quantities import Column
 
@@ -56,7 +56,7 @@ def _read(path: Path, _: Column | None) -> Log:
     stamps = {line.stamp for line in lines}
     if None not in stamps and (len(stamps) > 1 or len(lines) == 1):
         times = past_midnight([line.stamp or 0.0 for line in lines])
-        start = _date_of(times[0])
+        start = date_of(times[0])
     else:
         times, start = _by_epochs(path, lines)
     samples, begun = Samples(), float(np.nanmin(times))
@@ -108,14 +108,6 @@ def _stamp(prefix: str) -> float | None:
     return number / 1e3 if number > _MILLISECONDS else number
 
 
-def _date_of(moment: float) -> datetime | None:
-    """Return the date and time of a UNIX time; None of a time of day."""
-    try:
-        return datetime.fromtimestamp(moment, UTC) if moment > 1e8 else None
-    except (OverflowError, ValueError):
-        return None
-
-
 # ---------------------------------------------------------------------- times in sentences
 
 
@@ -158,7 +150,7 @@ def _start(lines: Sequence[_Line], times: Array, first: float) -> datetime | Non
         day = _day(vars(line.message))
         if day is not None and np.isfinite(moment):
             midnight = datetime(day.year, day.month, day.day, tzinfo=UTC).timestamp()
-            return _date_of(midnight + moment % 86400.0 - (moment - first))
+            return date_of(midnight + moment % 86400.0 - (moment - first))
     return None
 
 

@@ -5,13 +5,13 @@ from __future__ import annotations
 import re
 from collections import Counter
 from collections.abc import Iterator
-from datetime import UTC, datetime
 from pathlib import Path
 
 import can
 
 from seatrial.errors import InputError
 from seatrial.trial.logs.channels import Log, Samples
+from seatrial.trial.logs.clock_times import date_of
 from seatrial.trial.logs.formats import Format
 from seatrial.trial.logs.quantities import Column
 from seatrial_kits.can.frame import Frame
@@ -26,21 +26,24 @@ _LINE = re.compile(
 """As ``candump -L`` and ``candump -ta`` write a frame."""
 _BLF = b"LOGG"
 _FIX = 129029
-_NO_GNSS = 0
+_NO_GNSS = _TRUE = 0
 _CHANNELS: dict[str, tuple[tuple[str, str], ...]] = {
     "heading": (("heading", "rad"),),
     "rate_of_turn": (("rate_of_turn", "rad/s"),),
-    "attitude": (("roll", "rad"), ("pitch", "rad"), ("yaw", "rad")),
     "rudder": (("rudder", "rad"),),
     "rudder_order": (("rudder_order", "rad"),),
     "place": (("latitude", "deg"), ("longitude", "deg")),
     "altitude": (("altitude", "m"),),
-    "velocity": (("velocity_north", "m/s"), ("velocity_east", "m/s")),
     "water_speed": (("water_speed", "m/s"),),
     "depth": (("depth", "m"),),
     "wind": (("wind_speed", "m/s"), ("wind_angle", "rad")),
 }
 """Channels of the quantities of `READERS`, with units."""
+_FIELDS: dict[int, tuple[tuple[str, str, str], ...]] = {
+    127257: (("roll", "roll", "rad"), ("pitch", "pitch", "rad"), ("yaw", "yaw", "rad")),
+    129026: (("sog", "speed", "m/s"),),
+}
+"""Fields that are channels each for itself, by PGN: a node wants all of them, or none."""
 _DEFAULTS = {
     "latitude": ("129025.latitude", "129029.latitude"),
     "longitude": ("129025.longitude", "129029.longitude"),
@@ -84,24 +87,32 @@ def _read(path: Path, _: Column | None) -> Log:
     notes = [f"{count} {what}" for what, count in skipped.items()]
     if others:
         notes.append(f"{len(others)} PGNs are not read: {', '.join(map(str, sorted(others)))}")
-    start = datetime.fromtimestamp(begun, UTC)
-    return Log(path, "nmea2000", samples.channels(), _DEFAULTS, start, tuple(notes), row="line")
+    return Log(
+        path, "nmea2000", samples.channels(), _DEFAULTS, date_of(begun), tuple(notes), row="line"
+    )
 
 
 def _add(samples: Samples, message: Message, time: float, row: int) -> None:
-    instance = message.fields.get("instance") if message.pgn == 127245 else 0
+    for name, unit, value in _values(message):
+        if value is not None:
+            where = f"{message.pgn}.{name}"
+            samples.add(where, unit, time, float(value), row, str(message.source))
+
+
+def _values(message: Message) -> Iterator[tuple[str, str, float | None]]:
+    """Yield name, unit and value of the channels of a message."""
+    fields = message.fields
+    for field, name, unit in _FIELDS.get(message.pgn, ()):
+        yield name, unit, fields.get(field)
+    if message.pgn == 129026 and fields.get("cogReference") == _TRUE:
+        yield "course", "rad", fields.get("cog")
+    instance = fields.get("instance") if message.pgn == 127245 else 0
     suffix = f"[{instance}]" if instance else ""
-    source = str(message.source)
-    for quantity, values in READERS[message.pgn](message.fields).items():
-        named = _CHANNELS.get(quantity, ((quantity, "rad/s"),))  # engines, by number
-        for (name, unit), value in zip(named, values or (), strict=False):
-            samples.add(f"{message.pgn}.{name}{suffix}", unit, time, value, row, source)
-    if message.pgn == 129026:
-        speed, course = message.fields.get("sog"), message.fields.get("cog")
-        if speed is not None:
-            samples.add("129026.speed", "m/s", time, speed, row, source)
-        if course is not None and message.fields.get("cogReference") == 0:
-            samples.add("129026.course", "rad", time, course, row, source)
+    for quantity, values in READERS[message.pgn](fields).items():
+        engine = ((quantity, "rad/s"),) if quantity.startswith("engine ") else ()
+        named = zip(_CHANNELS.get(quantity, engine), values or (), strict=False)
+        for (name, unit), value in named:
+            yield name + suffix, unit, value
 
 
 def _candump(path: Path, skipped: Counter[str]) -> Iterator[tuple[int, float, Frame]]:
