@@ -39,13 +39,13 @@ def _read(path: Path, time: Column | None) -> Log:
         raise InputError(f"Parquet needs pyarrow, which is not installed: {INSTALL}") from None
     try:
         table = parquet.read_table(path)
+        names, columns = [_name_and_unit(field) for field in table.schema], table.columns
     except (pa.ArrowException, OSError, ValueError) as error:
         raise InputError(f"{path}: not Parquet: {error}") from None
     rows = np.arange(table.num_rows, dtype=np.float64)
     channels: dict[str, Channel] = {}
     dates: dict[str, Array] = {}
-    for field, column in zip(table.schema, table.columns, strict=True):
-        name, unit = _name_and_unit(field)
+    for (name, unit), field, column in zip(names, table.schema, columns, strict=True):
         if pa.types.is_timestamp(field.type):
             dates[name] = column.cast(pa.timestamp("ns")).cast(pa.int64()).to_numpy() / 1e9
         elif (

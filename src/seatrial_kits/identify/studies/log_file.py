@@ -75,15 +75,15 @@ class Columns:
         return f"{self.place(row)}, column {column!r}"
 
 
-def read_log(experiment: Experiment, path: Path) -> AxisLog:
-    """Return the log of the experiment's axis in a CSV file or a run folder.
+def read_log(experiment: Experiment, path: Path, format_name: str | None = None) -> AxisLog:
+    """Return the log of the experiment's axis in a log of any format.
 
     Raises InputError naming file, line and column: for a column that is missing, a unit that
     does not measure what it should, a cell that is no finite number, times that are not equally
-    spaced, fewer than 50 rows, a command beyond -1 to 1 or one that never changes, and a heading
+    spaced in a table, fewer than 50 rows, a command beyond -1 to 1 or one that never changes, and a heading
     that turns by more than 90 degrees between two rows, whose turns cannot be counted.
     """
-    columns = read_columns(path, experiment.file.columns)
+    columns = read_columns(path, experiment.file.columns, format_name)
     period, command = columns.period(), columns.command("command")
     if "acceleration" in columns.values:
         measured = _without_gravity(experiment, columns)
@@ -105,7 +105,7 @@ def _without_gravity(experiment: Experiment, columns: Columns) -> FloatArray:
     return acceleration_along(axis, reading, roll, pitch, reads=entry.reads)
 
 
-def read_columns(path: Path, columns: FileModel) -> Columns:
+def read_columns(path: Path, columns: FileModel, format_name: str | None = None) -> Columns:
     """Return the columns that an experiment's table names, in SI.
 
     Those of a log whose channels have different times are brought to even times, of the usual
@@ -113,7 +113,7 @@ def read_columns(path: Path, columns: FileModel) -> Columns:
     """
     named = {what: entry for what in QUANTITIES if (entry := getattr(columns, what, None))}
     wanted = {what: Column(entry.name, entry.unit) for what, entry in named.items()}
-    log = read_any(path, time=wanted.pop("time", None))
+    log = read_any(path, format_name, wanted.pop("time", None))
     found = chosen(log, wanted, wanted, units_needed=True)
     axis = next(what for what in _MEASURED if what in wanted)
     rows = together(found, axis, wanted, even=True)
