@@ -46,11 +46,11 @@ def together(
 ) -> Together:
     """Return quantities at the instants of one of them, ``axis``; ``even``: at its usual period.
 
-    Quantities that have the same times are taken as they are. Others are interpolated between
-    their own neighbours, angles after they are unwrapped: by a monotone cubic (PCHIP; no value lies
-    beyond its neighbours), an order by its last value. No value is extrapolated: the record is cut
-    to the part that all have. A quantity that is not ``needed`` and covers less than 95 % of the
-    rest is left out, with a note.
+    Quantities that have the same times, and the rows of a table, are taken as they are. Others are
+    interpolated between their own neighbours, angles after they are unwrapped: by a monotone cubic
+    (PCHIP; no value lies beyond its neighbours), an order by its last value. No value is
+    extrapolated: the record is cut to the part that all have. A quantity that is not ``needed`` and
+    covers less than 95 % of the rest is left out, with a note.
 
     Raises InputError, with places, for times that do not rise (entries of equal time are left out
     with a note, but for tables), gaps longer than five usual steps, angles as `unwrapped` does,
@@ -70,7 +70,7 @@ def together(
     for each in [main] if alike else parts.values():
         _check_gaps(each, first, last)
     time, at = main.time[inside], main.at(inside)
-    if alike:
+    if alike and (main.log.table or not even):
         values = {what: each.values[inside] for what, each in parts.items()}
         return Together(time, values, at.instant, tuple(notes))
     if even:

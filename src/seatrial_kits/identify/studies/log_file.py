@@ -80,8 +80,8 @@ def read_log(experiment: Experiment, path: Path, format_name: str | None = None)
 
     Raises InputError naming file, line and column: for a column that is missing, a unit that
     does not measure what it should, a cell that is no finite number, times that are not equally
-    spaced in a table, fewer than 50 rows, a command beyond -1 to 1 or one that never changes, and a heading
-    that turns by more than 90 degrees between two rows, whose turns cannot be counted.
+    spaced in a table, fewer than 50 rows, a command beyond -1 to 1 or one that never changes, and
+    a heading that turns by more than 90 degrees between two rows, whose turns cannot be counted.
     """
     columns = read_columns(path, experiment.file.columns, format_name)
     period, command = columns.period(), columns.command("command")
