@@ -110,7 +110,7 @@ def _read(path: Path, _: Column | None) -> Log:
             part = part.where(fix)
         channels |= _channels(part, begun)
     channels |= _derived(channels, _parameters(parts))
-    return Log(path, "ardupilot", channels, _DEFAULTS, _start(timed, begun), tuple(notes))
+    return Log(path, channels, start=_start(timed, begun), notes=tuple(notes))
 
 
 # ---------------------------------------------------------------------- messages
@@ -245,4 +245,4 @@ def _recognises(path: Path, head: bytes) -> bool:
     return head.startswith((b"\xa3\x95\x80", b"FMT, ", b"FMT,"))
 
 
-DATAFLASH = Format("log of ArduPilot", _recognises, _read)
+DATAFLASH = Format("log of ArduPilot", _recognises, _read, defaults=_DEFAULTS)

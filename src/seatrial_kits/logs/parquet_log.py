@@ -16,7 +16,7 @@ from seatrial.trial.logs.formats import Format
 from seatrial.trial.logs.quantities import QUANTITIES, Column, series
 from seatrial.trial.logs.run_log import of_craft
 
-from .parquet_file import INSTALL, TIME
+from .parquet_file import TIME
 
 _MAGIC = b"PAR1"
 _WITH_UNIT = re.compile(r"(.+?)\s*[\[(]([^\[\]()]+)[\])]")
@@ -32,11 +32,9 @@ def _read(path: Path, time: Column | None) -> Log:
     Raises InputError for a file that is not Parquet, or without a column of the time, and if
     pyarrow is missing.
     """
-    try:
-        import pyarrow as pa
-        from pyarrow import parquet
-    except ImportError:
-        raise InputError(f"Parquet needs pyarrow, which is not installed: {INSTALL}") from None
+    import pyarrow as pa
+    from pyarrow import parquet
+
     try:
         table = parquet.read_table(path)
         names, columns = [_name_and_unit(field) for field in table.schema], table.columns
@@ -57,7 +55,7 @@ def _read(path: Path, time: Column | None) -> Log:
             channels[name] = channel(name, unit, rows, values)
     craft = of_craft(channels)
     served = {what: [what, *craft.get(what, ())] for what in QUANTITIES}
-    log = Log(path, "parquet", channels, served, row="row", table=True)
+    log = Log(path, channels, served, row="row", table=True)
     return _timed(log, time or _time_column({*channels, *dates}), dates)
 
 

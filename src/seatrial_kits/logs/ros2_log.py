@@ -34,13 +34,11 @@ def _read(path: Path, _: Column | None) -> Log:
     stamp of the header, or, without one, that of the recording; from the first message on.
     Positions without a fix are left out.
 
-    Raises InputError for a bag that cannot be read, and if rosbags is not installed.
+    Raises InputError for a bag that cannot be read.
     """
-    try:
-        from rosbags.highlevel import AnyReader
-        from rosbags.typesys import Stores, get_typestore
-    except ImportError:
-        raise InputError('ROS 2 bags need rosbags: pip install "seatrial[ros2]"') from None
+    from rosbags.highlevel import AnyReader
+    from rosbags.typesys import Stores, get_typestore
+
     samples, served, skipped = Samples(), dict[str, list[str]](), Counter[str]()
     begun: int | None = None
     try:
@@ -67,7 +65,7 @@ def _read(path: Path, _: Column | None) -> Log:
         ) from None
     start = None if begun is None else date_of(begun / _NS)
     notes = tuple(f"{count} {what}" for what, count in skipped.items())
-    return Log(path, "rosbag2", samples.channels(), served, start, notes)
+    return Log(path, samples.channels(), served, start, notes)
 
 
 def _stamp(message: Any, recorded: int) -> int:

@@ -82,12 +82,10 @@ def _read(path: Path, _: Column | None) -> Log:
     log. Of topics with several instances the later ones are ``TOPIC[N].FIELD``. The attitude has
     roll, pitch and yaw beside its quaternion. Positions that are marked invalid are left out.
 
-    Raises InputError for a file that is no ULog, and if pyulog is not installed.
+    Raises InputError for a file that is no ULog.
     """
-    try:
-        from pyulog import ULog
-    except ImportError:
-        raise InputError('a ULog needs pyulog: pip install "seatrial[px4]"') from None
+    from pyulog import ULog
+
     said = io.StringIO()
     try:
         with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said):
@@ -101,7 +99,7 @@ def _read(path: Path, _: Column | None) -> Log:
     channels: dict[str, Channel] = {}
     for topic in read.data_list:
         channels |= _topic(topic, float(read.start_timestamp), notes)
-    return Log(path, "ulog", channels, _DEFAULTS, _start(read), tuple(notes))
+    return Log(path, channels, start=_start(read), notes=tuple(notes))
 
 
 def _topic(topic: Any, begun_us: float, notes: list[str]) -> dict[str, Channel]:
@@ -156,4 +154,4 @@ def _start(read: Any) -> datetime | None:
     return None
 
 
-ULOG = Format("ULog of PX4", lambda path, head: head.startswith(_MAGIC), _read)
+ULOG = Format("ULog of PX4", lambda path, head: head.startswith(_MAGIC), _read, defaults=_DEFAULTS)

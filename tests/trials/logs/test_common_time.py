@@ -18,7 +18,7 @@ def log_of(**series):
     channels = {
         name: channel(name, unit, time, values) for name, (time, values, unit) in series.items()
     }
-    return Log(Path("boat.log"), "made up", channels, {name: [name] for name in series})
+    return Log(Path("boat.log"), channels, {name: [name] for name in series})
 
 
 def at_heading(log, window=(-math.inf, math.inf), without=()):

@@ -41,8 +41,6 @@ class Log:
     """
 
     path: Path
-    format: str
-    """Name of the format, for messages."""
     channels: Mapping[str, Channel]
     defaults: Mapping[str, Sequence[str]] = field(default_factory=dict)
     """Channels that can serve a quantity, the best first; ``-NAME`` is one of opposite sign."""

@@ -66,7 +66,7 @@ def _read(path: Path, time: Column | None) -> Log:
             "--columns time=NAME names it"
         )
     rows = np.arange(len(table.rows), dtype=np.float64)
-    log = Log(path, "csv", {name: table.channel(name, rows) for name in table.names},
+    log = Log(path, {name: table.channel(name, rows) for name in table.names},
               {what: [what] for what in QUANTITIES}, row="line", table=True)  # fmt: skip
     first = _clock_time(table.column(column.name)[0]) if table.rows else None
     if not table.rows:

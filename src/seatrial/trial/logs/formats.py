@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ...errors import InputError
+from ...kits import lacking
 from ...plugins import Registry
 
 if TYPE_CHECKING:
@@ -31,6 +32,8 @@ class Format:
     recognises: Callable[[Path, bytes], bool]
     read: Callable[[Path, Column | None], Log]
     table: bool = False
+    defaults: Mapping[str, Sequence[str]] = field(default_factory=dict)
+    """Channels that can serve a quantity, as `Log.defaults`, unless the log itself says them."""
 
 
 FORMATS = Registry(
@@ -49,7 +52,8 @@ def read_log(path: Path, format_name: str | None = None, time: Column | None = N
     """Return the log at ``path``, of the format that is named, or that its content has.
 
     Raises InputError for a path that is not there or empty, a format that is not known, a column
-    of the time for a log that is no table, and as the format's reader does.
+    of the time for a log that is no table, a library that is not installed, and as the format's
+    reader does.
     """
     head = _head(path)
     name = format_name or _found(path, head)
@@ -60,9 +64,13 @@ def read_log(path: Path, format_name: str | None = None, time: Column | None = N
         log = chosen.read(path, time)
     except OSError as error:
         raise InputError(f"{path}: {error.strerror or error}") from None
+    except ModuleNotFoundError as error:
+        if said := lacking(error):
+            raise InputError(f"{path}: {chosen.title}: {said}") from None
+        raise
     if not log.channels:
         raise InputError(f"{path}: no channel was found in it, read as {chosen.title} ({name})")
-    return log
+    return log if log.defaults else replace(log, defaults=chosen.defaults)
 
 
 def format_of(path: Path) -> str:

@@ -32,7 +32,7 @@ def _read(path: Path, _: Column | None) -> Log:
         for name, values in numbers.items()
     }
     served = of_craft(channels)
-    return Log(path / SIGNALS, "run", channels, served, notes=run.notes, row="line", table=True)
+    return Log(path / SIGNALS, channels, served, notes=run.notes, row="line", table=True)
 
 
 def of_craft(names: Iterable[str]) -> dict[str, list[str]]:

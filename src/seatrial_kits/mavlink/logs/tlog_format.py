@@ -101,7 +101,7 @@ def _read(path: Path, _: Column | None) -> Log:
         notes.append(f"{without_fix} messages GPS_RAW_INT without a fix are left out")
     channels = samples.channels(_autopilot(frames))
     channels |= _derived(channels, parameters)
-    return Log(path, "tlog", channels, _DEFAULTS, date_of(begun / 1e6), tuple(notes))
+    return Log(path, channels, start=date_of(begun / 1e6), notes=tuple(notes))
 
 
 def _frames(data: bytes, skipped: Counter[str]) -> Iterator[_Frame]:
@@ -211,4 +211,4 @@ def _recognises(path: Path, head: bytes) -> bool:
     )
 
 
-TLOG = Format("MAVLink telemetry log", _recognises, _read)
+TLOG = Format("MAVLink telemetry log", _recognises, _read, defaults=_DEFAULTS)

@@ -5,8 +5,11 @@ Source: E. S. Raymond, "NMEA Revealed" (gpsd project); fields by pynmeagps's nam
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from typing import Any
+
+SENTENCE = re.compile(r"[$!]([A-Z0-9]{3,}[^$!*]*)\*([0-9A-Fa-f]{2})")
 
 _PLACE = {"lat": "deg", "lon": "deg"}
 _FIELDS: Mapping[str, Mapping[str, str]] = {
