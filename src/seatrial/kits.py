@@ -46,6 +46,7 @@ KINDS: Mapping[str, tuple[str, ...]] = {
     "components": ("class", "title"),
     "criteria": (),
     "faults": (),
+    "log_formats": (),
     "sections": (),
     "services": (),
     "terms": (),
@@ -55,9 +56,9 @@ KINDS: Mapping[str, tuple[str, ...]] = {
 
 algorithms: coupling algorithms. commands: of ``seatrial``. components: as ``fmus/index.toml`` has
 them. criteria: functions of criteria, `trial.criteria.expressions.Rule`. faults: of signals,
-`model.faults.catalogue.Kind`. sections: functions that return further sections of a run's report.
-services: functions that the core calls if they are there. terms: of the hydrodynamics of a vehicle.
-transports: kinds of links.
+`model.faults.catalogue.Kind`. log_formats: of logs that are read, `trial.logs.formats.Format`.
+sections: functions that return further sections of a run's report. services: functions that the
+core calls if they are there. terms: of the hydrodynamics of a vehicle. transports: kinds of links.
 """
 _TOP = ("api", "examples", "libraries", "needs", "title")
 

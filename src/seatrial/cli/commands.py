@@ -50,6 +50,10 @@ COMMANDS = {
         "seatrial.cli.compare:compare",
         "Compare two runs signal by signal; status 1 if their signals differ.",
     ),
+    "log": Command(
+        "seatrial.cli.log:log",
+        "Show the channels of a log: units, rates, ranges, gaps, and the quantities they serve.",
+    ),
     "doctor": Command(
         "seatrial.cli.doctor:doctor",
         "Show what works on this machine, what is missing, and how to fix it.",

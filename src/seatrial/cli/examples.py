@@ -17,6 +17,7 @@ _CORE = {
     "fmu list": "seatrial fmu list",
     "fmu survey": "seatrial fmu survey folder-of-fmus",
     "list": "seatrial list otter",
+    "log": "seatrial log boat.tlog",
     "move-vehicle": "seatrial move-vehicle my-boat",
     "new": "seatrial new vehicle my-boat",
     "new ardupilot": "seatrial new ardupilot my-boat",

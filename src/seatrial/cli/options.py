@@ -54,6 +54,18 @@ Out = Annotated[
     Path | None,
     typer.Option("--out", "-o", help="Folder of the run (default: runs/NAME-DATE-TIME)."),
 ]
+LogColumns = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--columns",
+        metavar="WHAT=NAME[:UNIT],...",
+        help="Columns or channels of a log by quantity; -NAME is of opposite sign.",
+    ),
+]
+LogFormat = Annotated[
+    str | None,
+    typer.Option("--format", metavar="NAME", help="Format of a log (default: by its content)."),
+]
 Hardware = Annotated[
     bool, typer.Option("--hardware", help="Allow devices; what is behind them may move.")
 ]

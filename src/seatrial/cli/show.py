@@ -58,7 +58,8 @@ def print_table(table: Table | Group) -> None:
     if console.is_terminal:
         console.print(table)
     else:
-        console.print(table, width=console.measure(table, options=_UNBOUNDED).maximum)
+        width = console.measure(table, options=_UNBOUNDED).maximum
+        SafeConsole(highlight=False, emoji=False, width=width).print(table)
 
 
 def print_more(count: int) -> None:

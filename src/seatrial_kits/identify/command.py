@@ -12,6 +12,7 @@ from rich.markup import escape
 from rich.table import Table
 
 from seatrial.cli.answer import answer
+from seatrial.cli.options import LogFormat
 from seatrial.cli.show import console
 from seatrial.trial.reports.report import REPORT
 from seatrial.trial.running.output import claim_folder
@@ -31,8 +32,9 @@ def identify(
     experiment: Annotated[str, typer.Argument(help="What the log holds: a name or a .toml file.")],
     log: Annotated[
         Path | None,
-        typer.Option("--log", help="CSV file or run folder, instead of the file's."),
+        typer.Option("--log", help="A log, or a run folder, instead of the file's."),
     ] = None,
+    format_name: LogFormat = None,
     out: Annotated[
         Path | None, typer.Option("--out", "-o", help="Folder of the result (default: runs/...).")
     ] = None,
@@ -40,7 +42,9 @@ def identify(
     """Identify an axis of a vehicle from a log; status 1 if the model is to be rejected."""
     loaded = read_experiment(experiment)
     found: Study | PlanarStudy = (
-        planar_study(loaded, log) if isinstance(loaded, PlanarExperiment) else study(loaded, log)
+        planar_study(loaded, log, format_name)
+        if isinstance(loaded, PlanarExperiment)
+        else study(loaded, log, format_name)
     )
     base = base_vehicle(found)
     folder = claim_folder(out, f"{loaded.name}-identified", REPORT)

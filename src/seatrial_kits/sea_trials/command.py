@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Annotated
@@ -12,17 +13,20 @@ from rich.markup import escape
 from rich.table import Table
 
 from seatrial.cli.answer import answer
-from seatrial.cli.show import console
+from seatrial.cli.options import LogColumns, LogFormat
+from seatrial.cli.show import console, print_notes
 from seatrial.errors import InputError, unknown
 from seatrial.model.readable import number, person_scale
 from seatrial.model.units import quantity
-from seatrial.trial.records.run_folder import load_run
+from seatrial.trial.logs.common_time import WHOLE, Window
+from seatrial.trial.logs.quantities import Column, read_columns
+from seatrial.trial.records.run_folder import MANIFEST, load_run
 
 from .drawing import shown_number
 from .evaluation import FIGURES, Done, approach_speed_of, criteria_name, figures_of
 from .figures.criteria import Verdict, imo
 from .figures.result import Figures
-from .log_file import read_columns, read_log
+from .log_record import read_record
 from .page import DATA, evaluated, run_folders, write_pages
 from .run_record import done_in
 
@@ -38,14 +42,16 @@ def _trials() -> None:
 
 @trials_app.command()
 def figures(
-    log: Annotated[Path, typer.Argument(help="A run folder, or a CSV file of a real trial.")],
+    log: Annotated[Path, typer.Argument(help="A run folder, or the log of a real trial.")],
     manoeuvre: Annotated[
-        str | None, typer.Option("--manoeuvre", help=f"Of a CSV file: {', '.join(FIGURES)}.")
+        str | None, typer.Option("--manoeuvre", help=f"Of a log: {', '.join(FIGURES)}.")
     ] = None,
-    columns: Annotated[
-        list[str] | None,
-        typer.Option("--columns", metavar="WHAT=NAME[:UNIT],...", help="Columns of a CSV file."),
+    columns: LogColumns = None,
+    format_name: LogFormat = None,
+    start: Annotated[
+        str | None, typer.Option("--from", help="Time of the log at which the record starts.")
     ] = None,
+    end: Annotated[str | None, typer.Option("--to", help="Time at which it ends.")] = None,
     length: Annotated[str | None, typer.Option(help="Length between perpendiculars.")] = None,
     heading: Annotated[str | None, typer.Option(help="Heading change of a zig-zag.")] = None,
     depth: Annotated[str | None, typer.Option(help="Depth that a step leads to.")] = None,
@@ -59,7 +65,12 @@ def figures(
 ) -> None:
     """Show the figures of a manoeuvre; status 1 if a criterion does not hold."""
     _check_criteria(criteria)
-    done = _with(_read(log, manoeuvre, columns or []), length, heading, depth, order or [])
+    window = (
+        -math.inf if start is None else _quantity("from", start, "s"),
+        math.inf if end is None else _quantity("to", end, "s"),
+    )
+    read = _read(log, manoeuvre, read_columns(columns or []), format_name, window, bool(order))
+    done = _with(read, length, heading, depth, order or [])
     found = figures_of(done)
     beside = None if compare is None else figures_of(done_in(load_run(compare)))
     verdicts = [] if criteria is None else _verdicts(done, found)
@@ -106,14 +117,30 @@ def _check_criteria(criteria: str | None) -> None:
         raise InputError(f"--criteria: {unknown('set', criteria, CRITERIA)}")
 
 
-def _read(log: Path, manoeuvre: str | None, columns: list[str]) -> Done:
-    if log.is_dir():
-        if manoeuvre is not None or columns:
-            raise InputError("--manoeuvre and --columns are for CSV files: a run has its own")
+def _read(
+    log: Path,
+    manoeuvre: str | None,
+    columns: dict[str, Column],
+    format_name: str | None,
+    window: Window,
+    ordered: bool,
+) -> Done:
+    if (log / MANIFEST).is_file():
+        if manoeuvre is not None or columns or format_name is not None or window != WHOLE:
+            raise InputError(
+                "--manoeuvre, --columns, --format, --from and --to are for logs: a run has its own"
+            )
         return done_in(load_run(log))
     if manoeuvre is None:
         raise InputError(f"--manoeuvre: one of {', '.join(FIGURES)} is needed")
-    return Done(manoeuvre, read_log(log, read_columns(columns)))
+    record, notes = read_record(log, columns, format_name, window)
+    if record.helm is None and not ordered:
+        notes += (
+            f"no helm is read: the order is taken to be given at {record.start:g} s, the first "
+            "row; --columns helm=NAME:UNIT names its channel, --order the time",
+        )
+    print_notes(notes)
+    return Done(manoeuvre, record)
 
 
 def _with(

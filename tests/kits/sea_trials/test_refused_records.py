@@ -66,7 +66,7 @@ def test_a_record_that_starts_in_a_turn_is_refused():
         (0, lambda t: t.__setitem__(9, t[8]), "time must rise"),
         (0, lambda t: t.__setitem__(slice(9, None), t[9:] + 60.0), "a gap from 8 s to 69 s"),
         (1, lambda x: x.__setitem__(9, np.nan), "north: row 10: a finite number"),
-        (3, lambda psi: psi.__imul__(math.degrees(1.0)), "up to pi/2 .* is in degrees"),
+        (3, lambda psi: psi.__imul__(math.degrees(1.0)), "up to 90 deg .* is in degrees"),
         (3, lambda psi: psi.__setitem__(slice(9, None), psi[9:] + 359.0), "more than 30 rad/s"),
         (4, lambda helm: helm.__imul__(math.degrees(1.0)), "helm: 35 is beyond pi"),
     ],

@@ -47,3 +47,12 @@ def continuous(quaternions: Array) -> Array:
     jumps = np.sum(quaternions[1:] * quaternions[:-1], axis=1) < 0.0
     signs = np.where(np.concatenate([[0], np.cumsum(jumps)]) % 2 == 1, -1.0, 1.0)
     return np.asarray(signs[: len(quaternions), None] * quaternions)
+
+
+def to_euler(quaternions: Any) -> tuple[Array, Array, Array]:
+    """Return roll, pitch and yaw, rad, of rotations: the inverse of `of_euler`."""
+    w, x, y, z = np.moveaxis(np.asarray(quaternions, dtype=float), -1, 0)
+    roll = np.arctan2(2.0 * (w * x + y * z), 1.0 - 2.0 * (x * x + y * y))
+    pitch = np.arcsin(np.clip(2.0 * (w * y - z * x), -1.0, 1.0))
+    yaw = np.arctan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z))
+    return roll, pitch, yaw

@@ -18,7 +18,10 @@ Axis = Literal["surge", "sway", "heave", "yaw"]
 
 
 class ColumnEntry(FileModel):
-    """A column of the log; the unit may be left out where a run folder has it."""
+    """A column or channel of the log, ``-NAME`` for one of opposite sign.
+
+    The unit may be left out where the log says it.
+    """
 
     name: str
     unit: str | None = None
@@ -33,7 +36,7 @@ class AccelerationEntry(ColumnEntry):
 class ColumnsEntry(FileModel):
     """The columns of a log that are used."""
 
-    time: ColumnEntry
+    time: ColumnEntry | None = None
     command: ColumnEntry
     acceleration: AccelerationEntry | None = None
     roll: ColumnEntry | None = None

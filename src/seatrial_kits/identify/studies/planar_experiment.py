@@ -27,7 +27,7 @@ PLANAR = "planar"
 class PlanarColumnsEntry(FileModel):
     """The columns of a log of turns that are used."""
 
-    time: ColumnEntry
+    time: ColumnEntry | None = None
     port: ColumnEntry
     starboard: ColumnEntry
     acceleration_x: AccelerationEntry

@@ -63,7 +63,9 @@ class PlanarStudy:
         return all(verdict.passed for verdict in self.verdicts)
 
 
-def planar_study(experiment: PlanarExperiment, log: Path | None = None) -> PlanarStudy:
+def planar_study(
+    experiment: PlanarExperiment, log: Path | None = None, format_name: str | None = None
+) -> PlanarStudy:
     """Identify sway and thrust from an experiment's log, or from ``log``. Raises InputError.
 
     Surge, yaw, delay and lag are those of the vehicle that ``result`` names, in its variant. The
@@ -73,7 +75,7 @@ def planar_study(experiment: PlanarExperiment, log: Path | None = None) -> Plana
     where = experiment.log_path(log)
     vehicle = load_vehicle(file.result.vehicle, path.parent)
     known, dry_mass, known_from = _known(experiment, vehicle)
-    whole = _read(experiment, where)
+    whole = _read(experiment, where, format_name)
     rows = len(whole.commands)
     cut = round((1.0 - file.held_out) * rows)
     fitted, test = whole.part(0, cut), whole.part(cut, rows)
@@ -135,9 +137,9 @@ def _known(experiment: PlanarExperiment, vehicle: Vehicle) -> tuple[PlanarKnown,
     return known, float(craft.mass), name
 
 
-def _read(experiment: PlanarExperiment, path: Path) -> PlanarLog:
+def _read(experiment: PlanarExperiment, path: Path, format_name: str | None) -> PlanarLog:
     entries = experiment.file.columns
-    columns = read_columns(path, entries)
+    columns = read_columns(path, entries, format_name)
     commands = np.column_stack([columns.command(name) for name in ("port", "starboard")])
     level = np.zeros(len(commands))
     roll, pitch = (columns.values.get(name, level) for name in ("roll", "pitch"))

@@ -83,7 +83,7 @@ class Study:
         return math.sqrt(float(gradient @ self.estimate.covariance @ gradient))
 
 
-def study(experiment: Experiment, log: Path | None = None) -> Study:
+def study(experiment: Experiment, log: Path | None = None, format_name: str | None = None) -> Study:
     """Identify an experiment's axis from its log, or from ``log``. Raises InputError.
 
     The fit sees the first part of the log; the rest, ``held_out``, evaluates it. With a
@@ -92,14 +92,14 @@ def study(experiment: Experiment, log: Path | None = None) -> Study:
     file = experiment.file
     log_path = experiment.log_path(log)
     test_path = log_path
-    whole = read_log(experiment, log_path)
+    whole = read_log(experiment, log_path, format_name)
     if file.test_log is None:
         count = len(whole.command)
         cut = round((1.0 - file.held_out) * count)
         fitted, test = whole.part(0, cut), whole.part(cut, count)
     else:
         test_path = experiment.read_from.path.parent / file.test_log
-        fitted, test = whole, read_log(experiment, test_path)
+        fitted, test = whole, read_log(experiment, test_path, format_name)
         if abs(test.period / fitted.period - 1.0) > 1e-6:
             raise InputError(
                 f"{test_path}: rows {test.period:g} s apart, {log_path} has {fitted.period:g} s"

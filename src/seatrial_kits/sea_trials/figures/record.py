@@ -12,16 +12,12 @@ from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
 from seatrial.errors import InputError
+from seatrial.trial.logs.common_time import GAP, unwrapped
 
 Array = NDArray[np.float64]
 
-FASTEST = 30.0
-"""rad/s; a heading that turns faster is not in radians."""
 _LEAST_ROWS = 8
-_GAP = 5.0
-"""Usual time steps; a longer one is a gap."""
 _LARGEST_HELM = math.pi
-_WRAP_SLACK = 0.5
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,7 +52,7 @@ class Record:
         _check_shapes(columns)
         _check_time(columns["time"])
         _check_helm(columns.get("helm"))
-        columns["heading"] = _unwrapped(columns["time"], columns["heading"])
+        columns["heading"] = unwrapped(columns["time"], columns["heading"], _heading_at)
         for name, column in columns.items():
             object.__setattr__(self, name, column)
 
@@ -150,13 +146,17 @@ def _check_time(time: Array) -> None:
             f"time: row {row + 2}: {time[row + 1]:g} s follows {time[row]:g} s; time must rise"
         )
     usual = float(np.median(steps))
-    gaps = np.flatnonzero(steps > _GAP * usual)
+    gaps = np.flatnonzero(steps > GAP * usual)
     if len(gaps):
         row = int(gaps[0])
         raise InputError(
             f"time: a gap from {time[row]:g} s to {time[row + 1]:g} s; rows are usually "
-            f"{usual:g} s apart, up to {_GAP:g} times that is allowed"
+            f"{usual:g} s apart, up to {GAP:g} times that is allowed"
         )
+
+
+def _heading_at(row: int) -> str:
+    return f"heading: row {row + 1}"
 
 
 def _check_helm(helm: Array | None) -> None:
@@ -165,27 +165,3 @@ def _check_helm(helm: Array | None) -> None:
             f"helm: {np.abs(helm).max():g} is beyond pi: radians, or shares of full helm from -1 "
             "to 1 are needed, not degrees"
         )
-
-
-def _unwrapped(time: Array, heading: Array) -> Array:
-    steps, elapsed = np.diff(heading), np.diff(time)
-    turned = np.remainder(steps + math.pi, math.tau) - math.pi
-    # One wrap from a row to the next is an angle that starts anew; more is another unit.
-    wrong = np.flatnonzero(
-        (np.abs(steps) > math.tau + _WRAP_SLACK) | (np.abs(turned) > FASTEST * elapsed)
-    )
-    if len(wrong):
-        row = int(wrong[0])
-        raise InputError(
-            f"heading: {heading[row]:g} rad to {heading[row + 1]:g} rad from {time[row]:g} s to "
-            f"{time[row + 1]:g} s: more than {FASTEST:g} rad/s; is it in degrees?"
-        )
-    fast = np.flatnonzero(np.abs(turned) > math.pi / 2)
-    if len(fast):
-        row = int(fast[0])
-        raise InputError(
-            f"heading: it turns by {turned[row]:.3g} rad from {time[row]:g} s to "
-            f"{time[row + 1]:g} s; up to pi/2 can be distinguished from a turn the other way: "
-            "more rows are needed, or it is in degrees"
-        )
-    return np.concatenate(([heading[0]], heading[0] + np.cumsum(turned)))

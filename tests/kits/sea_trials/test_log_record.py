@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from seatrial.errors import InputError
+from seatrial.trial.logs.quantities import read_columns
 from seatrial_kits.sea_trials.figures.turning import turning_circle
-from seatrial_kits.sea_trials.log_file import read_columns, read_log
+from seatrial_kits.sea_trials.log_record import read_record
 
 from .references import FOLDER, columns, record
 
@@ -22,7 +23,7 @@ def write(path, header, rows, form="%.9f"):
 
 
 def test_the_second_line_has_the_units():
-    read = read_log(FOLDER / f"{TURN}.csv", read_columns([NAMES]))
+    read = read_record(FOLDER / f"{TURN}.csv", read_columns([NAMES]))[0]
     assert np.array_equal(read.heading, record(TURN).heading)
     assert np.array_equal(read.helm, record(TURN).helm)
 
@@ -34,7 +35,7 @@ def test_units_on_the_command_line_and_wrapped_degrees(tmp_path):
     path = write(tmp_path / "log.csv", "UTC,N,E,HDG,RUD", rows)
     texts = ["time=UTC:min,north=N:nautical_mile", "east=E:nautical_mile",
              "heading=HDG:deg,helm=RUD:deg"]  # fmt: skip
-    found = turning_circle(read_log(path, read_columns(texts)))
+    found = turning_circle(read_record(path, read_columns(texts))[0])
     expected = turning_circle(record(TURN))
     assert found["advance"] == pytest.approx(expected["advance"], rel=1e-5)
     assert found["tactical_diameter"] == pytest.approx(expected["tactical_diameter"], rel=1e-5)
@@ -45,7 +46,7 @@ def test_latitude_and_longitude_become_metres(tmp_path):
     minute = 1.0 / 60.0
     rows = [(t, 45.0 + minute * t / 9.0, 7.0 + minute * t / 9.0, 0.0) for t in range(10)]
     path = write(tmp_path / "log.csv", "time,latitude,longitude,heading\ns,deg,deg,deg", rows)
-    read = read_log(path, {})
+    read = read_record(path, {})[0]
     assert read.north[-1] == pytest.approx(1852.2, abs=0.5)
     assert read.east[-1] == pytest.approx(1314.2, abs=0.5)
 
@@ -55,7 +56,7 @@ def test_latitude_and_longitude_become_metres(tmp_path):
     [
         ("heading", "WHAT=NAME or WHAT=NAME:UNIT is needed, found 'heading'"),
         ("heading=psi:", "found 'heading=psi:'"),
-        ("course=psi", "unknown column 'course'"),
+        ("course_=psi", "unknown quantity 'course_'"),
     ],
 )
 def test_columns_of_another_form_are_refused(text, message):
@@ -66,13 +67,13 @@ def test_columns_of_another_form_are_refused(text, message):
 @pytest.mark.parametrize(
     ("header", "cell", "texts", "message"),
     [
-        ("time,north,east,psi", "1", [], "columns of time, heading, .* found time, north, east"),
-        ("time,north,east,heading", "1", ["heading=HDG"], "line 1: heading: unknown column 'HDG'"),
+        ("time,north,east,psi", "1", [], "no column serves as heading; .* psi"),
+        ("time,north,east,heading", "1", ["heading=HDG"], "heading: unknown column 'HDG'"),
         ("time,north,east,heading", "x", [], "line 9, column 'heading': a finite .* 'x'"),
         ("time,north,east,heading", "1,2", [], "line 9: 5 values, the header has 4"),
         ("time,north,east,heading", "1", ["heading=heading:m"], "column 'heading': unit 'm'"),
         ("time,north,east,heading\ns,m,m,rad", "1", ["heading=heading:deg"], "in rad, not deg"),
-        ("time,north,east,heading", "1", [], "log.csv: time: row 8"),
+        ("time,north,east,heading", "1", [], "line 9: the time goes from 6 s to 3 s"),
     ],
 )
 def test_bad_files_are_refused(tmp_path, header, cell, texts, message):
@@ -80,12 +81,12 @@ def test_bad_files_are_refused(tmp_path, header, cell, texts, message):
     path = tmp_path / "log.csv"
     path.write_text(f"{header}\n{rows}3,0,0,{cell}\n", "utf-8")
     with pytest.raises(InputError, match=message):
-        read_log(path, read_columns(texts))
+        read_record(path, read_columns(texts))[0]
 
 
 def test_a_file_that_is_not_there(tmp_path):
-    with pytest.raises(InputError, match=r"none\.csv: No such file"):
-        read_log(tmp_path / "none.csv", {})
+    with pytest.raises(InputError, match=r"there is no log .*none\.csv"):
+        read_record(tmp_path / "none.csv", {})[0]
 
 
 def test_degrees_without_a_unit_are_refused(tmp_path):
@@ -93,5 +94,5 @@ def test_degrees_without_a_unit_are_refused(tmp_path):
     rows = np.column_stack((time, north, east, np.degrees(heading) % 360.0, np.degrees(helm)))
     path = write(tmp_path / "log.csv", "time,north,east,heading,helm", rows)
     with pytest.raises(InputError, match="radians, or shares of full helm"):
-        read_log(path, {})
+        read_record(path, {})[0]
     assert math.degrees(helm[-1]) == pytest.approx(-35.0)

@@ -1,0 +1,115 @@
+"""A log as it was read: its channels, each with times of its own."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from datetime import datetime
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...errors import InputError, unknown
+
+Array = NDArray[np.float64]
+Integers = NDArray[np.int64]
+
+
+@dataclass(frozen=True, eq=False)
+class Channel:
+    """One measured value over time: arrays (n,)."""
+
+    name: str
+    unit: str | None
+    """As `model.units` has it; None where the log does not say it."""
+    time: Array
+    """Time of the log, s."""
+    values: Array
+    """In the unit; NaN where the log has no finite number."""
+    rows: Integers
+    """Number of the line, row or message that each value stands in."""
+    wrong: Mapping[int, str] = field(default_factory=dict)
+    """The text in the place of a number, by index."""
+
+
+@dataclass(frozen=True, eq=False)
+class Log:
+    """A log: channels by name, in the order of the file.
+
+    Times are in s: as they are written in a table of seconds, else from the first entry, ``start``.
+    """
+
+    path: Path
+    channels: Mapping[str, Channel]
+    defaults: Mapping[str, Sequence[str]] = field(default_factory=dict)
+    """Channels that can serve a quantity, the best first; ``-NAME`` is one of opposite sign."""
+    start: datetime | None = None
+    """Date and time of the time 0, where they are known."""
+    notes: tuple[str, ...] = ()
+    """For a person: parts of the file that are left out, and why."""
+    row: str = "message"
+    """Kind of entry: line, row or message."""
+    table: bool = False
+    """Whether all channels have the same times, and a faulty cell is a mistake to be refused."""
+
+    def channel(self, name: str) -> Channel:
+        """Return a channel; raises InputError, with near misses, if there is none of that name."""
+        if name not in self.channels:
+            raise InputError(f"{self.path}: {unknown(self.noun, name, self.channels)}")
+        return self.channels[name]
+
+    @property
+    def noun(self) -> str:
+        """The word for a channel in messages."""
+        return "column" if self.table else "channel"
+
+    def place(self, channel: Channel, index: int) -> str:
+        """Return the place of a value, for messages."""
+        row = f"{self.path}, {self.row} {channel.rows[index]}"
+        return f"{row}, {self.noun} {channel.name!r}"
+
+    def instant(self, channel: Channel, index: int) -> str:
+        """Return the place of an entry's time, for messages: a table's row has one for all."""
+        return self.place(channel, index).partition(", column")[0]
+
+
+class Samples:
+    """Values as they come, message by message, to be made channels.
+
+    Several sources may send the same channel: two compasses, two vessels. That of the first source
+    keeps its plain name; the others have the source before theirs, ``SOURCE/NAME``.
+    """
+
+    def __init__(self) -> None:
+        self._entries: dict[tuple[str, str], tuple[str | None, list[tuple[float, float, int]]]] = {}
+
+    def add(
+        self, name: str, unit: str | None, time: float, value: float, row: int, source: str = ""
+    ) -> None:
+        """Add a value of a channel; see `Channel`."""
+        self._entries.setdefault((name, source), (unit, []))[1].append((time, value, row))
+
+    def channels(self, first: str | None = None) -> dict[str, Channel]:
+        """Return the channels by name, in the order in which they began.
+
+        ``first`` is the source that keeps plain names, whichever came before it.
+        """
+        plain = dict(reversed(self._entries))
+        plain |= {name: source for name, source in self._entries if source == first}
+        found = {}
+        for (name, source), (unit, entries) in self._entries.items():
+            shown = name if plain[name] == source else f"{source}/{name}"
+            time, values, rows = zip(*entries, strict=True)
+            found[shown] = channel(shown, unit, time, values, rows)
+        return found
+
+
+def channel(
+    name: str, unit: str | None, time: object, values: object, rows: object | None = None
+) -> Channel:
+    """Return a channel of any sequences; rows are counted from 1. Infinite values become NaN."""
+    numbers = np.array(values, np.float64)
+    numbers[~np.isfinite(numbers)] = np.nan
+    counted = np.arange(1, len(numbers) + 1) if rows is None else rows
+    return Channel(name, unit, np.asarray(time, np.float64), numbers, np.asarray(counted, np.int64))
