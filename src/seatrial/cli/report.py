@@ -9,6 +9,7 @@ import typer
 
 from ..trial.campaigns.page import has_table, write_table_page
 from ..trial.reports.campaign_report import CAMPAIGN, write_campaign_report
+from ..trial.reports.further_page import write_further_page
 from ..trial.reports.playing import play
 from ..trial.reports.report import write_report
 from .answer import answer
@@ -26,3 +27,6 @@ def report(
         page = write_campaign_report(folder) if is_campaign else write_report(folder, play=play)
     answer.result = {"report": str(page)}
     console.print(f"report: {page}", soft_wrap=True)
+    if is_campaign and (further := write_further_page(folder)) is not None:
+        answer.result["page"] = str(further.path)
+        console.print(f"page: {further.path}", soft_wrap=True)

@@ -23,7 +23,7 @@ from .evaluation import FIGURES, Done, approach_speed_of, criteria_name, figures
 from .figures.criteria import Verdict, imo
 from .figures.result import Figures
 from .log_file import read_columns, read_log
-from .page import DATA, evaluated, run_folders, write_pages
+from .page import DATA, evaluated, failed, run_folders, write_pages
 from .run_record import done_in
 
 trials_app = typer.Typer(no_args_is_help=True, pretty_exceptions_enable=False)
@@ -92,12 +92,11 @@ def page(
     folder = runs[0] if out is None else out
     folder.mkdir(parents=True, exist_ok=True)
     path = write_pages(trials, folder)
-    failed = [verdict.ability for trial in trials for verdict in trial.verdicts
-              if not verdict.passed]  # fmt: skip
-    answer.result = {"page": str(path), "json": str(path.with_name(DATA)), "failed": failed}
+    lacking = [what for trial in trials for what in failed(trial)]
+    answer.result = {"page": str(path), "json": str(path.with_name(DATA)), "failed": lacking}
     console.print(f"page: {path}", soft_wrap=True)
-    if failed:
-        console.print(f"FAIL  {', '.join(failed)}", soft_wrap=True)
+    if lacking:
+        console.print(f"FAIL  {', '.join(lacking)}", soft_wrap=True)
         raise typer.Exit(_FAILED)
 
 

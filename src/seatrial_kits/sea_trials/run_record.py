@@ -14,8 +14,8 @@ from .evaluation import Done
 from .figures.record import Array, Record
 
 COMPONENT = "manoeuvre"
-_LENGTHS = ("length", "hull_length")
-"""Parameters of a craft that are its length, the best first."""
+_LENGTHS = ("length", "hull_length", "hull_size.x")
+"""Parameters of a craft that are its length, the best first; else that of its outline."""
 
 
 def has_manoeuvre(run: Run) -> bool:
@@ -42,6 +42,10 @@ def done_in(run: Run) -> Done:
     depth = None
     if values["kind"] == "depth-step":
         depth = float(values["depth_start"]) + float(values["depth_change"])
+    measured = {
+        "power": run.signals.get(f"{name}.total_power"),
+        "pull": run.signals.get(f"{name}.pull"),
+    }
     record = Record(
         run.time,
         _signal(run, f"{craft}.position.x"),
@@ -51,6 +55,8 @@ def done_in(run: Run) -> Done:
         roll=run.signals.get(f"{craft}.attitude.phi"),
         pitch=run.signals.get(f"{craft}.attitude.theta"),
         depth=run.signals.get(f"{craft}.position.z"),
+        # Without a model of it, or a line, nothing is connected, and both are 0.
+        **{key: value for key, value in measured.items() if value is not None and value.any()},
     )
     return Done(
         values["kind"],
@@ -62,6 +68,9 @@ def done_in(run: Run) -> Done:
         length=_length(_entry(run, craft)),
         helm=min(float(values["helm"]), float(values["full_helm"])),
         full_helm=float(values["full_helm"]),
+        window=float(values["window"]),
+        side=str(values["side"]),
+        criteria=str(values["criteria"]),
         beam=_entry(run, craft).get("outline", {}).get("beam"),
     )
 
@@ -109,4 +118,5 @@ def _length(craft: Mapping[str, Any]) -> float | None:
         value = craft["parameters"].get(name, {}).get("value")
         if isinstance(value, float) and value > 0.0:
             return value
-    return None
+    length: float | None = craft.get("outline", {}).get("length")
+    return length

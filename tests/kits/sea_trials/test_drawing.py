@@ -7,7 +7,8 @@ import numpy as np
 import plotly.graph_objects as go
 import pytest
 
-from seatrial_kits.sea_trials.drawing import drawings, heading_and_helm, rows_of, track
+from seatrial_kits.sea_trials.curves import drawings
+from seatrial_kits.sea_trials.drawing import heading_and_helm, rows_of, track
 from seatrial_kits.sea_trials.evaluation import Done, figures_of
 
 from .references import FIGURES, columns, record

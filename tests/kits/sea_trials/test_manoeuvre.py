@@ -29,7 +29,7 @@ class Trial:
         self.run(longest, np.random.default_rng(0), noise)
 
     def run(self, longest, random, noise):
-        north = east = rate = speed = depth = 0.0
+        north = east = rate = speed = depth = pitch = 0.0
         heading = 3.1  # a turn to starboard wraps at once
         for k in range(round(longest / STEP)):
             read = self.component.get
@@ -49,7 +49,9 @@ class Trial:
                                + noise * random.standard_normal())  # fmt: skip
             velocity = speed * math.cos(heading), speed * math.sin(heading), 0.0
             self.component.set("velocity_n", list(velocity))
+            pitch -= STEP * 0.05 * read("manual")[3]
             self.component.set("depth", depth)
+            self.component.set("pitch", pitch)
             self.component.advance(k * STEP, STEP)
         self.depth = depth
 

@@ -46,7 +46,6 @@ def test_the_campaign_has_both_sides():
 def test_the_mariner_turns_as_computed_elsewhere(tmp_path):
     changes = {
         "choices.vehicle": "mariner",
-        "choices.step": "100 ms",
         "autopilot.manoeuvre.helm": "15 deg",
         "autopilot.manoeuvre.side": "port",
         "autopilot.manoeuvre.window": "20 s",
@@ -62,7 +61,7 @@ def test_the_mariner_turns_as_computed_elsewhere(tmp_path):
 
 @pytest.mark.interop
 def test_the_kvlcc2_under_her_pilot_turns_as_the_reference(tmp_path):
-    changes = {"choices.vehicle": "kvlcc2", "choices.step": "100 ms", "variant": "model"}
+    changes = {"choices.vehicle": "kvlcc2", "variant": "model"}
     trial = load_trial("turning-circle", changes=changes, origin="test")
     folder = run_trial(trial, tmp_path / "run", engine="direct").folder
     found = figures_of(done_in(load_run(folder)))
