@@ -36,8 +36,8 @@ _HEADING = math.radians(1.0)
 """Change of the mean heading within which the approach is straight, rad."""
 _DEPTH = 0.05
 """Change of the mean depth within which it is steady, m."""
-_HELM = 0.02
-"""Change of the mean helm, a share, within which one that was searched for is found."""
+_FOUND = 0.01
+"""Change of the mean helm, and error of the mean rate, shares, within which a helm is found."""
 _SPEED_SHARE, _RATE_SHARE = 0.01, 0.02
 _ASTERN = -0.5
 """Speed order before a manoeuvre that begins at rest, while the craft still moves ahead."""
@@ -80,7 +80,7 @@ class Manoeuvre(HelmForRate, Sampled):
     williamson       helm until ``heading_change``, then opposite until 190 deg the other way
     turn-on-the-spot from rest, helm until the heading has changed by ``turn``
     bollard-pull     from rest, on a line: full ahead until the rate is steady
-    station-keeping  the mode hold, for five windows after a first one
+    station-keeping  the mode hold, for five minutes after a ``window``
     depth-step       guided at ``guided_speed``: the depth of the approach, ``depth_start``,
                      changes by ``depth_change``, until it is steady
     vertical-zig-zag manual dive, the share helm / full_helm, down and up at changes of the pitch
@@ -296,7 +296,7 @@ class Manoeuvre(HelmForRate, Sampled):
             slowest: float = self._fast * (self.slow if order.speed == 0.0 else 0.0)
             return self._speed() <= slowest
         if order.until == SETTLED:
-            found = order.by != RATE or self._is_steady("helm", 0.0, _HELM)
+            found = order.by != RATE or self._is_found(order.share)
             turning = self._is_steady("rate", _RATE_SHARE, _RATE)
             return found and turning and self._is_moving_steadily()
         if order.until == DEEP:
@@ -307,15 +307,21 @@ class Manoeuvre(HelmForRate, Sampled):
     def _is_ready(self) -> bool:
         """Return whether the approach has come to its end."""
         if self.kind == "station-keeping":
-            return self._has_lasted(1)
+            return self._has_lasted(self.window)
         level = not self._is_deep() and self.kind != "depth-step"
         level = level or self._is_steady("depth", 0.0, _DEPTH)
         straight = self._is_steady("heading", 0.0, _HEADING)
         return level and straight and self._is_moving_steadily()
 
-    def _has_lasted(self, windows: int) -> bool:
-        """Return whether the order in force has lasted so long."""
-        return bool(self._lasted >= windows * self._samples)
+    def _is_found(self, share: float) -> bool:
+        """Return whether the rate is that share of the first one, with a steady helm."""
+        if not self._is_steady("helm", 0.0, _FOUND):
+            return False
+        return abs(self._mean("rate") / self._rate - share) <= _FOUND
+
+    def _has_lasted(self, longest: float) -> bool:
+        """Return whether the order in force has lasted so long, s."""
+        return bool(self._lasted * self.period >= longest)
 
     def _is_moving_steadily(self) -> bool:
         return self._is_steady("speed", _SPEED_SHARE, _SLOWEST)

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 TURNED, SETTLED, SLOW, DEEP, LASTED = "turned", "settled", "slow", "deep", "lasted"
 """Ends of an order: a change of heading or pitch is reached, rate and speed are steady, the speed
-ahead is down to a share of that of the approach, the depth is steady, five windows are over."""
+ahead is down to a share of that of the approach, the depth is steady, five minutes are over."""
 HELM, HEADING, RATE, PLANES = "helm", "heading", "rate", "planes"
 """What an order's share is of: the helm of the manoeuvre; nothing, the pilot holds the heading; the
 rate of turn at the end of the first order, for which the helm is found; the manual dive."""
@@ -51,8 +51,8 @@ EXECUTES = 5
 """Executes of a zig-zag, by the IMO."""
 POWERS = (1.0, 0.75, 0.5, 0.25)
 """Speed orders of a speed trial, shares of that of the approach: a double run with each."""
-LASTING = 5
-"""Windows over which an order lasts that nothing else ends."""
+LASTING = 300.0
+"""Time over which an order lasts that nothing else ends, s."""
 
 
 def _turning_circle(numbers: Numbers) -> list[Order]:

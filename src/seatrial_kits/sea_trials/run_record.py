@@ -14,8 +14,8 @@ from .evaluation import Done
 from .figures.record import Array, Record
 
 COMPONENT = "manoeuvre"
-_LENGTHS = ("length", "hull_length", "hull_size.x")
-"""Parameters of a craft that are its length, the best first; else that of its outline."""
+_LENGTHS = ("length", "outline", "hull_size.x", "hull_length")
+"""Where the length of a craft is, the best first: parameters, and that of its outline."""
 
 
 def has_manoeuvre(run: Run) -> bool:
@@ -114,9 +114,11 @@ def _entry(run: Run, name: str) -> Mapping[str, Any]:
 
 
 def _length(craft: Mapping[str, Any]) -> float | None:
+    # Those of the vehicle's file have a mark: the component's own start values tell nothing of it.
+    found = {name: each["value"] for name, each in craft["parameters"].items() if each.get("mark")}
+    found["outline"] = craft.get("outline", {}).get("length")
     for name in _LENGTHS:
-        value = craft["parameters"].get(name, {}).get("value")
+        value = found.get(name)
         if isinstance(value, float) and value > 0.0:
             return value
-    length: float | None = craft.get("outline", {}).get("length")
-    return length
+    return None

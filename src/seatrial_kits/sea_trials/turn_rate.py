@@ -4,7 +4,7 @@ from __future__ import annotations
 
 _ANGLE = 0.2
 """Heading change over which the rate is measured while a turn is at its largest, rad."""
-_PROPORTIONAL = 2.0
+_PROPORTIONAL, _INTEGRAL = 2.0, 2.0
 _LEAST_RATE = 1e-4
 """rad/s."""
 
@@ -15,7 +15,7 @@ class HelmForRate:
     With R the rate of the steady turn at the helm of the manoeuvre, r the rate measured over a
     heading change of up to 0.2 rad, and e the wanted share less r / R,
 
-        helm_found = clip(I + 2 e),   I' = |R| e
+        helm_found = clip(I + 2 e),   I' = 2 |R| e
 
     clip(x) = x held within +-1; I stays within that too. Time constants go by 1 / R, as do those
     of a vessel that turns. The helm begins at 1, where the turn left it. Shares are positive to the
@@ -43,7 +43,7 @@ class HelmForRate:
             return
         rate = (heading - self._headings[0]) / (count * period)
         error = wanted - rate / self._rate
-        self._integral = _clip(self._integral + period * abs(self._rate) * error)
+        self._integral = _clip(self._integral + _INTEGRAL * period * abs(self._rate) * error)
         self._found = _clip(self._integral + _PROPORTIONAL * error)
 
 

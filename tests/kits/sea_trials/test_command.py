@@ -93,7 +93,7 @@ def test_one_page_of_all_trials_of_a_vehicle(run, tmp_path):
     (trial,) = json.loads((tmp_path / "page/sea-trials.json").read_text("utf-8"))
     assert trial["trial"] == "turning-circle"
     (advance, diameter) = trial["criteria"]
-    assert advance["value"] == pytest.approx(trial["figures"]["advance"]["value"] / 2.066)
+    assert advance["value"] == pytest.approx(trial["figures"]["advance"]["value"] / 2.0)
     assert advance["margin"] == pytest.approx(4.5 - advance["value"])
     assert diameter["limit"] == 5.0
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from scipy.interpolate import PchipInterpolator
+from scipy.interpolate import CubicSpline
 
 from seatrial.errors import InputError
 
@@ -114,15 +114,15 @@ class Stability:
 def stability(helm: Any, rate: Any) -> Stability:
     """Return what a reverse spiral tells of helm (n,), rad, and rate (n,), in any order.
 
-    The curve is the piecewise cubic through its points that adds no extremum (Fritsch and Carlson
-    1980); the width is that between its extrema on the branch that is not stable. Raises
-    InputError for rates that do not enclose 0.
+    The curve is the cubic spline through its points; the width is that between its extrema on the
+    branch that is not stable. Raises InputError for less than four rates, or rates that do not
+    enclose 0.
     """
     order = np.argsort(rate)
     helm, rate = np.asarray(helm, np.float64)[order], np.asarray(rate, np.float64)[order]
-    if not rate[0] < 0.0 < rate[-1] or not (np.diff(rate) > 0.0).all():
-        raise InputError("reverse spiral: different rates to both sides are needed")
-    curve = PchipInterpolator(rate, helm)
+    if len(rate) < 4 or not rate[0] < 0.0 < rate[-1] or not (np.diff(rate) > 0.0).all():
+        raise InputError("reverse spiral: four different rates, to both sides, are needed")
+    curve = CubicSpline(rate, helm)
     at = np.linspace(rate[0], rate[-1], 2001)
     falling = np.diff(curve(at)) < 0.0
     inside = curve(at)[:-1][falling]
