@@ -82,9 +82,9 @@ class CampaignResult:
 
         A page that a kit makes of the campaign comes too.
         """
+        from ..trial.campaigns.further_page import write_further_page
         from ..trial.campaigns.page import write_table_page
         from ..trial.reports.campaign_report import write_campaign_report
-        from ..trial.reports.further_page import write_further_page
 
         if self.table is not None:
             return write_table_page(self.folder)

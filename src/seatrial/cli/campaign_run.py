@@ -15,10 +15,10 @@ from ..errors import InputError, SimulationError
 from ..system.system import Engine
 from ..trial.campaigns.campaign import Campaign, load_campaign, run_campaign
 from ..trial.campaigns.cases import Case
+from ..trial.campaigns.further_page import write_further_page
 from ..trial.campaigns.sweep import How as SweepHow
 from ..trial.campaigns.sweep import keep_named
 from ..trial.reports.campaign_report import write_campaign_report, write_case_report
-from ..trial.reports.further_page import write_further_page
 from ..trial.reports.playing import play
 from ..trial.running.hooks import Hooks
 from ..trial.running.run import Result

@@ -27,7 +27,7 @@ from .page import DATA, evaluated, failed, run_folders, write_pages
 from .run_record import done_in
 
 trials_app = typer.Typer(no_args_is_help=True, pretty_exceptions_enable=False)
-CRITERIA = ("imo",)
+CRITERIA = ("imo", "none")
 _FAILED = 1
 
 
@@ -62,7 +62,7 @@ def figures(
     done = _with(_read(log, manoeuvre, columns or []), length, heading, depth, order or [])
     found = figures_of(done)
     beside = None if compare is None else figures_of(done_in(load_run(compare)))
-    verdicts = [] if criteria is None else _verdicts(done, found)
+    verdicts = _verdicts(done, found) if criteria == "imo" else []
     answer.result = {**found.as_dict(), "criteria": [_verdict(each) for each in verdicts]}
     if beside is not None:
         answer.result["compared"] = beside.as_dict()
@@ -84,7 +84,10 @@ def page(
     out: Annotated[
         Path | None, typer.Option("--out", "-o", help="Folder of the page (default: the first).")
     ] = None,
-    criteria: Annotated[str | None, typer.Option("--criteria", help="imo: MSC.137(76).")] = None,
+    criteria: Annotated[
+        str | None,
+        typer.Option("--criteria", help="imo: MSC.137(76), or none (default: by the vehicle)."),
+    ] = None,
 ) -> None:
     """Write one page, and one JSON file, of a vehicle's sea trials; status 1 as for figures."""
     _check_criteria(criteria)

@@ -38,5 +38,5 @@ def test_the_campaign_has_both_sides_and_says_what_it_leaves_out():
 
 
 def test_a_sailing_boat_has_no_trials():
-    with pytest.raises(InputError, match="no trial applies: .* the wind drives it"):
+    with pytest.raises(InputError, match=r"no trial applies: .* the wind drives it"):
         load_campaign("sea-trials", {"choices.vehicle": "gloria"})

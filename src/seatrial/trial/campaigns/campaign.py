@@ -31,6 +31,8 @@ from .stopping_rule import StoppingRule
 INDEX = "campaign.json"
 CONDITIONS = Registry("seatrial.conditions", "condition of campaigns", {})
 """Functions of kits: of a `Trial`, why it does not apply to its rig, None if it does."""
+PAGES = Registry("seatrial.pages", "page of campaigns", {})
+"""Functions of kits that write a page into a campaign's folder, and return it: `Written`."""
 _UNWRITTEN = 0.01
 """Share of the cases in the index that may have ended since it was written, while others run.
 
@@ -147,6 +149,8 @@ def load_campaign(name: str, changes: Mapping[str, Any] | None = None) -> Campai
     path = find_file("harness/campaigns", name)
     content, read_from = read_toml(path)
     file = _with(validated(CampaignFile, content, path), changes or {}, path)
+    if file.page is not None:
+        _named(PAGES.target, file.page, f"{path}: page")
     chosen = {key: value for key, value in (changes or {}).items() if is_choice(key)}
     trials = []
     for entry in file.trials:
@@ -173,6 +177,13 @@ def _with(file: CampaignFile, changes: Mapping[str, Any], path: Path) -> Campaig
     return file.model_copy(update={"trials": entries, "set": {**file.set, **changes}})
 
 
+def _named(look_up: Callable[[str], Any], name: str, where: str) -> Any:
+    try:
+        return look_up(name)
+    except InputError as error:
+        raise InputError(f"{where}: {error}") from None
+
+
 def _applying(campaign: Campaign) -> Campaign:
     """Return a campaign without the trials that do not apply. Raises InputError without any."""
     file = campaign.file
@@ -182,10 +193,7 @@ def _applying(campaign: Campaign) -> Campaign:
     for grid in (file.grid, *(e.grid for e in file.trials if isinstance(e, TrialEntry))):
         for key in filter(is_choice, grid):
             raise InputError(f"{where}: grid has values of {key}: one rig is needed")
-    try:
-        reason_of = CONDITIONS.load(file.condition)
-    except InputError as error:
-        raise InputError(f"{where}: {error}") from None
+    reason_of = _named(CONDITIONS.load, file.condition, where)
     kept, left_out = [], {}
     for trial, entry in zip(campaign.trials, file.trials, strict=True):
         own = {} if isinstance(entry, str) else entry.set

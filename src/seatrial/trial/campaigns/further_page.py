@@ -5,13 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 from typing import NamedTuple
 
-from ...plugins import Registry
 from ..records import run_schema
 from ..records.run_schema import checked_json
-from .campaign_report import CAMPAIGN
-
-PAGES = Registry("seatrial.pages", "page of campaigns", {})
-"""Functions of kits that write a page into a campaign's folder, and return it: `Written`."""
+from .campaign import INDEX, PAGES
 
 
 class Written(NamedTuple):
@@ -23,7 +19,7 @@ class Written(NamedTuple):
 
 def write_further_page(folder: Path) -> Written | None:
     """Write the page that a campaign's folder names, if it names one. Raises InputError."""
-    name = checked_json(folder / CAMPAIGN, run_schema.CAMPAIGN).get("page")
+    name = checked_json(folder / INDEX, run_schema.CAMPAIGN).get("page")
     if name is None:
         return None
     written: Written = PAGES.load(name)(folder)
