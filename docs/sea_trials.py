@@ -1,4 +1,4 @@
-"""Sea trials of vehicles for their pages: ``python docs/sea_trials.py otter`` runs them, for minutes.
+"""Sea trials of vehicles for their pages: ``python docs/sea_trials.py otter`` runs them.
 
 The folder of a campaign that has run may follow the name. The figures go to
 ``docs/vehicles/sea-trials/otter.json``, from which docs/tables.py makes the table of the page.
@@ -20,7 +20,7 @@ DIGITS = 4
 
 
 def kept(trials: list[dict[str, Any]]) -> list[dict[str, Any]]:
-    """Return what the tables are made of: figures to four digits, and reasons where there is none."""
+    """Return what the tables are made of: figures to four digits, and what went wrong."""
     rows = []
     for trial in trials:
         figures = {

@@ -17,6 +17,8 @@ from .figures.straight import speed_ahead
 
 Trial = tuple[Done, Figures]
 Drawn = Iterator[tuple[str, Figure]]
+_LARGE = 1e4
+"""W; a power from which on it is drawn in kW."""
 _POINTS = 100
 """Of a fitted curve."""
 
@@ -99,18 +101,18 @@ def _speed_power(trials: Sequence[Trial]) -> Drawn:
 
 
 def _speed_power_figure(speeds: Array, powers: Array, found: Figures) -> Figure:
-    figure = Figure()
+    figure, (scale, unit) = Figure(), (1e-3, "kW") if powers.max() > _LARGE else (1.0, "W")
     if "speed_power_exponent" in found:
         at = np.linspace(speeds.min(), speeds.max(), _POINTS)
-        fitted = found["power_at_1_m_s"] * at ** found["speed_power_exponent"]
-        figure.trace("scatter", x=at, y=fitted / 1e3, mode="lines", name="P = c U^n",
+        fitted = found["power_at_unit_speed"] * at ** found["speed_power_exponent"]
+        figure.trace("scatter", x=at, y=fitted * scale, mode="lines", name="P = c U^n",
                      line={"width": 1.2, "color": COLOURS[1]}, hoverinfo="skip")  # fmt: skip
-    figure.trace("scatter", x=speeds, y=powers / 1e3, mode="markers", name="double runs",
+    figure.trace("scatter", x=speeds, y=powers * scale, mode="markers", name="double runs",
                  marker={"size": 8, "color": COLOURS[0]},
-                 hovertemplate="%{x:.3f} m/s: %{y:.4g} kW")  # fmt: skip
+                 hovertemplate=f"%{{x:.3f}} m/s: %{{y:.4g}} {unit}")  # fmt: skip
     figure.lay_out(height=420, showlegend=False, **layout(hovermode="closest"))
     figure.x_axis(title={"text": "speed through the water, m/s"}, rangemode="tozero")
-    figure.y_axis(title={"text": "power, kW"}, rangemode="tozero")
+    figure.y_axis(title={"text": f"power, {unit}"}, rangemode="tozero")
     return figure
 
 

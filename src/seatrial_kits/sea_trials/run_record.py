@@ -43,6 +43,8 @@ def done_in(run: Run) -> Done:
     if values["kind"] == "depth-step":
         depth = float(values["depth_start"]) + float(values["depth_change"])
     measured = {
+        "roll": run.signals.get(f"{craft}.attitude.phi"),
+        "pitch": run.signals.get(f"{craft}.attitude.theta"),
         "power": run.signals.get(f"{name}.total_power"),
         "pull": run.signals.get(f"{name}.pull"),
     }
@@ -52,10 +54,8 @@ def done_in(run: Run) -> Done:
         _signal(run, f"{craft}.position.y"),
         _signal(run, f"{craft}.attitude.psi"),
         _signal(run, f"{name}.helm_order") * float(values["full_helm"]),
-        roll=run.signals.get(f"{craft}.attitude.phi"),
-        pitch=run.signals.get(f"{craft}.attitude.theta"),
         depth=run.signals.get(f"{craft}.position.z"),
-        # Without a model of it, or a line, nothing is connected, and both are 0.
+        # What a model does not have, or no connection brings, is 0.
         **{key: value for key, value in measured.items() if value is not None and value.any()},
     )
     return Done(

@@ -142,7 +142,7 @@ def speed_trial(record: Record, runs: Sequence[tuple[float, float]]) -> Figures:
     ``runs`` has begin and end of each, s: with a power there and back on the reciprocal course,
     then with the next. A run's speed is the mean along its heading over ground, `mean_of_means`
     that of a double run; the current along the course leaves no error. P = c U^n has the
-    exponent ``speed_power_exponent`` n and c = ``power_at_1_m_s``.
+    exponent ``speed_power_exponent`` n and c = ``power_at_unit_speed``.
 
     Raises InputError for an odd number of runs, or times outside the record.
     """
@@ -157,7 +157,7 @@ def speed_trial(record: Record, runs: Sequence[tuple[float, float]]) -> Figures:
         if all("power" in each for each in pair):
             powers.append(sum(each["power"] for each in pair) / 2.0)
             found.add("W", **{f"power_{number}": powers[-1]})
-    names = "power_at_1_m_s", "speed_power_exponent"
+    names = "power_at_unit_speed", "speed_power_exponent"
     if not powers:
         found.lack("the record has no power", "power", *names)
         return found.figures()
@@ -167,7 +167,7 @@ def speed_trial(record: Record, runs: Sequence[tuple[float, float]]) -> Figures:
         found.lack(str(error), *names)
     else:
         found.add("1", speed_power_exponent=exponent)
-        found.add("W", power_at_1_m_s=factor)
+        found.add("W", power_at_unit_speed=factor)
     return found.figures()
 
 
