@@ -31,6 +31,7 @@ from parts import (  # noqa: E402, F401  each registers its parts
     nmea2000,
     profile,
     reference,
+    sea_trials,
     settings,
     ships,
     tether,

@@ -44,9 +44,11 @@ KINDS: Mapping[str, tuple[str, ...]] = {
     "algorithms": (),
     "commands": ("call", "help"),
     "components": ("class", "title"),
+    "conditions": (),
     "criteria": (),
     "faults": (),
     "log_formats": (),
+    "pages": (),
     "sections": (),
     "services": (),
     "terms": (),
@@ -55,10 +57,12 @@ KINDS: Mapping[str, tuple[str, ...]] = {
 """Kinds of parts, and the keys of each: where it is, and what it is for; none: the place alone.
 
 algorithms: coupling algorithms. commands: of ``seatrial``. components: as ``fmus/index.toml`` has
-them. criteria: functions of criteria, `trial.criteria.expressions.Rule`. faults: of signals,
-`model.faults.catalogue.Kind`. log_formats: of logs that are read, `trial.logs.formats.Format`.
-sections: functions that return further sections of a run's report. services: functions that the
-core calls if they are there. terms: of the hydrodynamics of a vehicle. transports: kinds of links.
+them. conditions: functions that say why a campaign leaves out a trial. criteria: functions of
+criteria, `trial.criteria.expressions.Rule`. faults: of signals, `model.faults.catalogue.Kind`.
+log_formats: of logs that are read, `trial.logs.formats.Format`. pages: functions that write a
+further page of a campaign's folder. sections: functions that return further sections of a run's
+report. services: functions that the core calls if they are there. terms: of the hydrodynamics of a
+vehicle. transports: kinds of links.
 """
 _TOP = ("api", "examples", "libraries", "needs", "title")
 

@@ -98,7 +98,7 @@ def test_a_criterion_that_fails_is_status_one(tmp_path: Path) -> None:
             "output and cannot be set",
         ),
         (["run", "hydrone-landing", "--engine", "warp"], "'fmu', 'direct' or 'native'"),
-        (["run", "hydrone-pads", "--set", "seed=3"], "--set works with a trial"),
+        (["run", "hydrone-pads", "--set", "seeds=3"], "unknown key 'seeds'"),
         (
             ["run", "hydrone-landing", "--real-time", "0"],
             "factor: Input should be greater than or equal to",

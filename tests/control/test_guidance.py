@@ -318,6 +318,7 @@ MANUAL_AXES = [0.5, -0.5, 0.25, -1.0]
     ("mode", "engaged", "direct"),
     [
         ("manual", [False, False, False], MANUAL_AXES),
+        ("manual-depth", [False, False, True], [0.5, -0.5, 0.25, 0.0]),
         ("stabilize", [False, True, False], [0.5, -0.5, 0.0, -1.0]),
         ("depth-hold", [False, True, True], [0.5, -0.5, 0.0, 0.0]),
         ("hold", [True, True, True], [0.0, 0.0, 0.0, 0.0]),
@@ -329,7 +330,8 @@ def test_manual_control_acts_where_no_autopilot_does(mode, engaged, direct):
         found.advance(0.1 * k, 0.1)
     assert (found.get("engaged"), found.get("direct")) == (engaged, direct)
     # Manual control of the axes that are held: 0.4 rad/s and 0.2 m/s at full deflection.
-    turned, sunk = 0.25 * 0.4 * (mode in ("stabilize", "depth-hold")), -0.2 * (mode == "depth-hold")
+    turned = 0.25 * 0.4 * (mode in ("stabilize", "depth-hold"))
+    sunk = -0.2 * mode.endswith("depth") - 0.2 * (mode == "depth-hold")
     assert found.get("heading_wanted") == pytest.approx(1.0 + turned)
     assert found.get("depth_wanted") == pytest.approx(5.0 + sunk)
 
@@ -338,6 +340,7 @@ def test_manual_control_acts_where_no_autopilot_does(mode, engaged, direct):
     ("mode", "needed"),
     [
         ("manual", set()),
+        ("manual-depth", {"depth"}),
         ("stabilize", {"heading"}),
         ("depth-hold", {"heading", "depth"}),
         ("hold", {"heading", "depth", "position"}),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -78,7 +78,11 @@ class CampaignResult:
         return sum(found), len(found)
 
     def report(self) -> Path:
-        """Write the pages of all cases and of the campaign; return the path of the latter."""
+        """Write the pages of all cases and of the campaign; return the path of the latter.
+
+        A page that a kit makes of the campaign comes too.
+        """
+        from ..trial.campaigns.further_page import write_further_page
         from ..trial.campaigns.page import write_table_page
         from ..trial.reports.campaign_report import write_campaign_report
 
@@ -86,6 +90,7 @@ class CampaignResult:
             return write_table_page(self.folder)
         for case in self.cases:
             case.result.report()
+        write_further_page(self.folder)
         return write_campaign_report(self.folder)
 
     def to_pandas(self) -> pandas.DataFrame:
@@ -130,6 +135,7 @@ class CampaignResult:
 def run_campaign(
     campaign: str | Path,
     *,
+    set: Mapping[str, Any] | None = None,
     out: str | Path | None = None,
     engine: str = "direct",
     jobs: int | None = None,
@@ -140,15 +146,15 @@ def run_campaign(
 ) -> CampaignResult:
     """Run every case of a campaign, as ``seatrial run`` does, and return what they left.
 
-    ``campaign`` is a name or the path of a ``.toml`` file; ``out`` and ``engine`` are as for
-    `run_trial`. ``jobs`` cases run side by side, None: as many as there are cores; what they leave
-    does not depend on it. ``keep`` ("all", "failed" or "none"), or that of the campaign's file,
-    leaves a table of all cases, with the folders of those; ``cluster`` runs it on the workers of a
-    Dask scheduler, ``HOST:PORT`` or ``tls://HOST:PORT``, on another host only if the environment
-    has SEATRIAL_NETWORK=1. With ``resume``, ``out`` may be what the campaign has left: it
-    goes on from there. ``progress`` is called after each case with how many are done, and of how
-    many. A case that could not go on, or whose process died, has the status ``failed`` and does
-    not end the campaign.
+    ``campaign`` is a name or the path of a ``.toml`` file; ``set`` changes all cases, with keys as
+    for `run_trial`; ``out`` and ``engine`` are as there, too. ``jobs`` cases run side by side,
+    None: as many as there are cores; what they leave does not depend on it. ``keep`` ("all",
+    "failed" or "none"), or that of the campaign's file, leaves a table of all cases, with the
+    folders of those; ``cluster`` runs it on the workers of a Dask scheduler, ``HOST:PORT`` or
+    ``tls://HOST:PORT``, on another host only if the environment has SEATRIAL_NETWORK=1. With
+    ``resume``, ``out`` may be what the campaign has left: it goes on from there. ``progress`` is
+    called after each case with how many are done, and of how many. A case that could not go on, or
+    whose process died, has the status ``failed`` and does not end the campaign.
 
     Raises InputError for bad input in any case, before the first one runs; KeyboardInterrupt for
     a campaign that was interrupted: its folder holds the cases so far, for
@@ -158,7 +164,7 @@ def run_campaign(
     from ..trial.campaigns.campaign import load_campaign
     from ..trial.campaigns.sweep import How, keep_named
 
-    loaded, kept = load_campaign(str(campaign)), keep_named(keep, "keep")
+    loaded, kept = load_campaign(str(campaign), set), keep_named(keep, "keep")
     target = None if out is None else Path(out)
     count, finished = len(loaded.cases()), 0
 

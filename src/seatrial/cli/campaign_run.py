@@ -2,14 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
+from typing import Any
+
+import typer
+from rich.markup import escape
 
 from ..errors import InputError, SimulationError
 from ..system.system import Engine
 from ..trial.campaigns.campaign import Campaign, load_campaign, run_campaign
 from ..trial.campaigns.cases import Case
+from ..trial.campaigns.further_page import write_further_page
 from ..trial.campaigns.sweep import How as SweepHow
 from ..trial.campaigns.sweep import keep_named
 from ..trial.reports.campaign_report import write_campaign_report, write_case_report
@@ -19,6 +25,7 @@ from ..trial.running.run import Result
 from .answer import answer
 from .leaves import Leaves, exit_with
 from .show import console, print_case, print_notes, run_entry
+from .statuses import FAILED
 from .stopping import stoppable
 from .table_run import run_table
 from .watch import Watch
@@ -37,12 +44,19 @@ class How:
     keep_going: bool
 
 
-def run_cases(name: str, out: Path | None, how: How, leaves: Leaves) -> None:
+def run_cases(
+    name: str, changes: Mapping[str, Any], out: Path | None, how: How, leaves: Leaves
+) -> None:
     """Run a campaign into its table, or each case into a folder. Raises InputError."""
-    campaign = load_campaign(name)
+    campaign = load_campaign(name, changes)
+    print_notes([f"{trial} is left out: {why}" for trial, why in campaign.left_out.items()])
     if how.keep is not None or how.cluster is not None or campaign.has_table:
         if how.hang_after is not None:
             raise InputError("--hang-after works with a campaign whose every case leaves a folder")
+        if campaign.file.page is not None:
+            raise InputError(
+                "--keep and --cluster leave a table: this campaign makes a page of all"
+            )
         sweep = SweepHow(
             how.engine, how.jobs, how.cluster, keep_named(how.keep, "--keep"), how.resume
         )
@@ -91,6 +105,7 @@ def _run_folders(campaign: Campaign, out: Path | None, how: How, leaves: Leaves)
             "runs": entries,
         }
         leaves.write_page(lambda: write_campaign_report(folder), results)
+        failed = _further_page(folder) if leaves.report else []
     whole = sum(result.status != "stopped" for result in results)
     if whole < len(cases):
         raise SimulationError(
@@ -98,3 +113,17 @@ def _run_folders(campaign: Campaign, out: Path | None, how: How, leaves: Leaves)
             f"--out {folder} --resume goes on"
         )
     exit_with(results)
+    if failed:
+        raise typer.Exit(FAILED)
+
+
+def _further_page(folder: Path) -> list[str]:
+    """Write the page of a kit, if the campaign has one, and return what does not hold by it."""
+    page = write_further_page(folder)
+    if page is None:
+        return []
+    answer.result["page"] = str(page.path)
+    console.print(f"page: {page.path}", soft_wrap=True)
+    for what in page.failed:
+        console.print(f"[red]FAIL[/red]  {escape(what)}", soft_wrap=True)
+    return page.failed

@@ -7,6 +7,7 @@ from typing import Annotated
 
 import typer
 
+from ..trial.campaigns.further_page import write_further_page
 from ..trial.campaigns.page import has_table, write_table_page
 from ..trial.reports.campaign_report import CAMPAIGN, write_campaign_report
 from ..trial.reports.playing import play
@@ -26,3 +27,6 @@ def report(
         page = write_campaign_report(folder) if is_campaign else write_report(folder, play=play)
     answer.result = {"report": str(page)}
     console.print(f"report: {page}", soft_wrap=True)
+    if is_campaign and (further := write_further_page(folder)) is not None:
+        answer.result["page"] = str(further.path)
+        console.print(f"page: {further.path}", soft_wrap=True)

@@ -103,9 +103,7 @@ def run(
     if is_campaign(trial):
         of_trials = {
             "--live works with a trial, not with a campaign": live,
-            "--set works with a trial; a campaign sets its own parameters": settings,
             "--fault works with a trial; a campaign has faults of its own": faults,
-            "--choose works with a trial; a campaign has choices in its grid": changes,
             "--real-time and --overrun work with a trial, not with a campaign": pace,
             "--record works with a trial, not with a campaign": record != "trial",
             "--resume needs the campaign's folder, --out FOLDER": resume and out is None,
@@ -113,9 +111,8 @@ def run(
         for refusal, given in of_trials.items():
             if given:
                 raise InputError(refusal)
-        run_cases(
-            trial, out, How(chosen, jobs, resume, cluster, keep, hang_after, keep_going), leaves
-        )
+        how = How(chosen, jobs, resume, cluster, keep, hang_after, keep_going)
+        run_cases(trial, changes, out, how, leaves)
         return
     if jobs is not None or resume or keep or cluster:
         said = "--jobs, --resume, --keep and --cluster"

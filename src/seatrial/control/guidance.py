@@ -13,7 +13,12 @@ from .guidance_orders import MANUAL_AXES, ORDERS, SENSED, Decision, GuidanceOrde
 from .guidance_path import Point
 
 PILOTED = MappingProxyType(
-    {"manual": (False, False), "stabilize": (True, False), "depth-hold": (True, True)}
+    {
+        "manual": (False, False),
+        "manual-depth": (False, True),
+        "stabilize": (True, False),
+        "depth-hold": (True, True),
+    }
 )
 """Modes under manual control, and whether heading and depth are held in them."""
 MODES = (*PILOTED, "hold", "guided", "auto", "return", "loiter", "surface")
@@ -30,10 +35,12 @@ class _Guided(NamedTuple):
 
 
 class Guidance(GuidanceOrders):
-    """Guidance in nine modes, above autopilots for heading, speed and depth.
+    """Guidance in ten modes, above autopilots for heading, speed and depth.
 
     ========== ============================================================================
     manual     the manual control ``manual`` goes to ``direct``; no autopilot acts
+    manual-    as manual, with the depth held: manual heave changes it at ``dive_rate``
+    depth
     stabilize  as manual, with the heading held: manual yaw turns it at ``turn_rate``
     depth-hold as stabilize, with the depth held: manual heave changes it at ``dive_rate``
     hold       stay where the mode was set
@@ -52,8 +59,8 @@ class Guidance(GuidanceOrders):
 
     **Neutral.** Not ``armed``, or with an estimate that the mode needs not valid for longer than
     ``timeout`` or never yet, no autopilot acts, ``direct`` is 0, and what is wanted is what is
-    measured, at speed 0. Manual needs none, stabilize a heading, depth-hold a heading and a
-    depth, the others a position too; depth is needed with ``depth_control`` only.
+    measured, at speed 0. Manual needs none, stabilize a heading, manual-depth a depth, depth-hold
+    both, the others a position too; depth is needed with ``depth_control`` only.
 
     **Legs** (and the straight lines to a position or home, which begin where the craft was
     when they were ordered) are followed by line of sight (Fossen 2011, section 10.3), e the

@@ -13,7 +13,7 @@ from ..vehicle_folders import Place, owner, stem
 from .files import Source, find_place, read_place, validated
 from .own_references import with_owner
 from .paths import joined
-from .rig import ComponentEntry, Rig, RigFile, Scope, check_rig_file
+from .rig import ComponentEntry, Rig, RigFile, Scope, check_rig_file, duration_ns
 
 _DEEPEST = 16
 _CHOICE = re.compile(r"\{([A-Za-z_][A-Za-z0-9_]*)\}")
@@ -25,8 +25,9 @@ def load_rig(
 ) -> Rig:
     """Read the rig ``name`` (shipped, in ``harness/rigs``, or a path) with all rigs inside it.
 
-    ``choices`` replace the defaults of its file. Raises InputError for anything wrong in the
-    files, a choice that nothing uses, and a rig that contains itself.
+    ``choices`` replace the defaults of its file. A rig that says no step has the shortest of
+    those inside it. Raises InputError for anything wrong in the files, a choice that nothing uses,
+    and a rig that contains itself.
     """
     place = find_place("harness/rigs", name, relative_to)
     reading = _Reading(dict(choices or {}))
@@ -34,7 +35,16 @@ def load_rig(
     idle = [name for name in reading.given if name not in reading.used]
     if idle:
         raise InputError(f"{place}: {unknown('choice', idle[0], sorted(reading.used))}")
+    if not top.file.step:
+        top = replace(top, file=top.file.model_copy(update={"step": _shortest_step(top)}))
     return Rig(top.file, top.read_from, top)
+
+
+def _shortest_step(top: Scope) -> str | None:
+    """Return the shortest communication step that a rig inside says, as written."""
+    steps = {duration_ns(s.file.step, f"{s.read_from.where}: step"): s.file.step
+             for s in top.all() if s.file.step}  # fmt: skip
+    return steps[min(steps)] if steps else None
 
 
 def rig_of(

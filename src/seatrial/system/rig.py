@@ -155,7 +155,7 @@ class RigFile(FileModel):
 
     title: str = ""
     step: str | None = None
-    """Communication step; an inner rig's holds where that runs alone."""
+    """Communication step; None, or empty, is the shortest of the rigs inside."""
     tolerance: float | None = Field(default=None, gt=0.0, le=0.1, allow_inf_nan=False)
     """Relative tolerance for the FMUs of others in it, and in inner rigs, that say none."""
     algorithm: str = "jacobi"
@@ -246,7 +246,7 @@ class Rig:
         """Communication step, ns."""
         where = f"{self.read_from.where}: step"
         if self.file.step is None:
-            raise InputError(f"{where}: this key is missing: a rig that runs alone needs it")
+            raise InputError(f"{where}: this key is missing, and no rig inside has one")
         return duration_ns(self.file.step, where)
 
     def changed(self, changes: Mapping[str, Any]) -> Rig:
@@ -328,7 +328,7 @@ def check_rig_file(file: RigFile, where: str) -> None:
         if not _IDENTIFIER.fullmatch(name) or name in file.components:
             what = "is a component too" if name in file.components else "is no identifier"
             raise InputError(f"{where}: shows.{name}: {name!r} {what}")
-    if file.step is not None and duration_ns(file.step, f"{where}: step") <= 0:
+    if file.step and duration_ns(file.step, f"{where}: step") <= 0:
         raise InputError(f"{where}: step: must be positive, found {file.step!r}")
     _check_algorithm(where, file)
 

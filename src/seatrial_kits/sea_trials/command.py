@@ -27,11 +27,11 @@ from .evaluation import FIGURES, Done, approach_speed_of, criteria_name, figures
 from .figures.criteria import Verdict, imo
 from .figures.result import Figures
 from .log_record import read_record
-from .page import DATA, evaluated, run_folders, write_pages
+from .page import DATA, evaluated, failed, run_folders, write_pages
 from .run_record import done_in
 
 trials_app = typer.Typer(no_args_is_help=True, pretty_exceptions_enable=False)
-CRITERIA = ("imo",)
+CRITERIA = ("imo", "none")
 _FAILED = 1
 
 
@@ -73,7 +73,7 @@ def figures(
     done = _with(read, length, heading, depth, order or [])
     found = figures_of(done)
     beside = None if compare is None else figures_of(done_in(load_run(compare)))
-    verdicts = [] if criteria is None else _verdicts(done, found)
+    verdicts = _verdicts(done, found) if criteria == "imo" else []
     answer.result = {**found.as_dict(), "criteria": [_verdict(each) for each in verdicts]}
     if beside is not None:
         answer.result["compared"] = beside.as_dict()
@@ -95,7 +95,10 @@ def page(
     out: Annotated[
         Path | None, typer.Option("--out", "-o", help="Folder of the page (default: the first).")
     ] = None,
-    criteria: Annotated[str | None, typer.Option("--criteria", help="imo: MSC.137(76).")] = None,
+    criteria: Annotated[
+        str | None,
+        typer.Option("--criteria", help="imo: MSC.137(76), or none (default: by the vehicle)."),
+    ] = None,
 ) -> None:
     """Write one page, and one JSON file, of a vehicle's sea trials; status 1 as for figures."""
     _check_criteria(criteria)
@@ -103,12 +106,11 @@ def page(
     folder = runs[0] if out is None else out
     folder.mkdir(parents=True, exist_ok=True)
     path = write_pages(trials, folder)
-    failed = [verdict.ability for trial in trials for verdict in trial.verdicts
-              if not verdict.passed]  # fmt: skip
-    answer.result = {"page": str(path), "json": str(path.with_name(DATA)), "failed": failed}
+    lacking = [what for trial in trials for what in failed(trial)]
+    answer.result = {"page": str(path), "json": str(path.with_name(DATA)), "failed": lacking}
     console.print(f"page: {path}", soft_wrap=True)
-    if failed:
-        console.print(f"FAIL  {', '.join(failed)}", soft_wrap=True)
+    if lacking:
+        console.print(f"FAIL  {', '.join(lacking)}", soft_wrap=True)
         raise typer.Exit(_FAILED)
 
 

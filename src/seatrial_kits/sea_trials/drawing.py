@@ -1,9 +1,9 @@
-"""Drawings of manoeuvres, as naval architects draw them: tracks, heading and helm, spirals."""
+"""Tracks, heading and helm of manoeuvres as naval architects draw them, and tables of figures."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -11,7 +11,7 @@ from seatrial.model.readable import number, person_scale
 from seatrial.trial.reports.figure import Figure
 from seatrial.trial.reports.plots import COLOURS, Line, Mark, Panel, layout, time_figure
 
-from .evaluation import Done, spiral_curve
+from .evaluation import Done
 from .figures.record import Array
 from .figures.result import Figures
 
@@ -24,19 +24,7 @@ _SLENDER = 6.0
 _ROW = 22
 """Height of a row of figures, pixels."""
 _ROUNDING = 1e-6
-_DEGREES = math.degrees(1.0)
-
-
-def drawings(done: Done, found: Figures) -> Iterator[tuple[str, Figure]]:
-    """Yield title and figure of a manoeuvre: its figures, its track, and heading or spiral."""
-    name = found.manoeuvre.capitalize()
-    yield f"{name}: figures", table(rows_of(found, done.length))
-    if done.kind not in ("depth-step", "acceleration"):
-        yield f"{name}: track", track([done])
-    if done.kind == "spiral":
-        yield f"{name}: rate of turn against helm", spiral_figure(done)
-    if done.kind in ("zig-zag", "initial-turning", "pull-out", "williamson"):
-        yield f"{name}: heading and helm", heading_and_helm(done, found)
+DEGREES = math.degrees(1.0)
 
 
 def rows_of(found: Figures, length: float | None) -> list[tuple[str, str, str]]:
@@ -79,22 +67,29 @@ def table(rows: Sequence[tuple[str, str, str]]) -> Figure:
     return figure
 
 
-def track(trials: Sequence[Done]) -> Figure:
+def track(trials: Sequence[Done], circle: float | None = None) -> Figure:
     """Return tracks from the order on, the approach course up, in ship lengths, with outlines.
 
     Without a length they are in m, without outlines. The outlines stand where the craft was at
-    equal times, at most forty; one whose beam is not known is a sixth of its length wide.
+    equal times, at most forty; one whose beam is not known is a sixth of its length wide. A
+    ``circle`` has a radius in m, about the place of the order.
     """
     figure = Figure()
     for index, done in enumerate(trials):
         colour = COLOURS[index % len(COLOURS)]
-        across, along, heading, time = _from_order(done)
+        across, along, heading, time = from_order(done)
         scale = done.length or 1.0
-        figure.trace("scatter", x=across / scale, y=along / scale, mode="lines", name=done.kind,
-                     line={"width": 1.6, "color": colour},
+        figure.trace("scatter", x=across / scale, y=along / scale, mode="lines",
+                     name=done.side or done.kind, line={"width": 1.6, "color": colour},
                      hovertemplate="%{y:.3f} ahead, %{x:.3f} to starboard")  # fmt: skip
         if done.length is not None:
             _outlines(figure, done, (across, along, heading, time), colour)
+        if circle is not None:
+            angle = np.linspace(0.0, math.tau, 73)
+            figure.trace("scatter", x=circle / scale * np.sin(angle),
+                         y=circle / scale * np.cos(angle), mode="lines",
+                         hoverinfo="skip", name="95 % of the time",
+                         line={"width": 1.0, "color": "#4a5a68"})  # fmt: skip
     unit = "ship lengths" if all(done.length for done in trials) else "m"
     figure.lay_out(height=560, showlegend=False, **layout(hovermode="closest"))
     figure.x_axis(title={"text": f"to starboard, {unit}"})
@@ -104,11 +99,11 @@ def track(trials: Sequence[Done]) -> Figure:
 
 def heading_and_helm(done: Done, found: Figures) -> Figure:
     """Return heading change and helm over the time from the order, overshoots marked, deg."""
-    _, _, heading, time = _from_order(done)
+    _, _, heading, time = from_order(done)
     helm = done.record.helm[-len(time) :] if done.record.helm is not None else 0.0 * time
-    angle = done.heading * _DEGREES
+    angle = done.heading * DEGREES
     marks = [Mark(f"{sign * angle:g} deg", sign * angle, is_band=True) for sign in (1.0, -1.0)]
-    lines = [Line("heading change", heading * _DEGREES), Line("helm", helm * _DEGREES)]
+    lines = [Line("heading change", heading * DEGREES), Line("helm", helm * DEGREES)]
     panel = Panel("heading change and helm, to starboard", "deg", lines, marks)
     figure = time_figure(time, [[panel]])
     figure.lay_out(height=420)
@@ -117,8 +112,8 @@ def heading_and_helm(done: Done, found: Figures) -> Figure:
         if not all(name in found for name in names):
             continue
         at = found[names[0]] + found[names[1]]
-        peak = float(np.interp(at, time, heading)) * _DEGREES
-        text = f"{found[f'overshoot_{number_of}'] * _DEGREES:.1f}°"
+        peak = float(np.interp(at, time, heading)) * DEGREES
+        text = f"{found[f'overshoot_{number_of}'] * DEGREES:.1f}°"
         place = "top center" if peak > 0.0 else "bottom center"
         figure.trace("scatter", x=[at], y=[peak], mode="markers+text", text=[text],
                      textposition=place, marker={"size": 8, "color": COLOURS[1]},
@@ -126,20 +121,7 @@ def heading_and_helm(done: Done, found: Figures) -> Figure:
     return figure
 
 
-def spiral_figure(done: Done) -> Figure:
-    """Return r' = r L / U against helm, deg, step by step."""
-    helm, rate = spiral_curve(done)
-    figure = Figure()
-    figure.trace("scatter", x=helm * _DEGREES, y=rate, mode="lines+markers",
-                 line={"width": 1.6, "color": COLOURS[0]},
-                 hovertemplate="helm %{x:.3g} deg: r' %{y:.4g}")  # fmt: skip
-    figure.lay_out(height=420, showlegend=False, **layout(hovermode="closest"))
-    figure.x_axis(title={"text": "helm, deg, positive to turn to starboard"})
-    figure.y_axis(title={"text": "r' = r L / U"})
-    return figure
-
-
-def _from_order(done: Done) -> tuple[Array, Array, Array, Array]:
+def from_order(done: Done) -> tuple[Array, Array, Array, Array]:
     """Return way across and along the approach, m, heading change, rad, and time, s, since then."""
     record = done.record
     order = record.start if done.first is None else done.first
@@ -156,7 +138,9 @@ def _outlines(
 ) -> None:
     across, along, heading, time = way
     assert done.length is not None
-    every = next((each for each in _INTERVALS if time[-1] / each <= _OUTLINES), _INTERVALS[-1])
+    every = next(
+        (each for each in _INTERVALS if time[-1] / each <= _OUTLINES), time[-1] / _OUTLINES
+    )
     half = 0.5 / _SLENDER if done.beam is None else 0.5 * done.beam / done.length
     ahead, aside = np.array([[0.5, 0.0], [0.25, half], [-0.5, half], [-0.5, -half], [0.25, -half],
                              [0.5, 0.0]]).T  # fmt: skip

@@ -10,14 +10,15 @@ import numpy as np
 
 from seatrial.errors import InputError, unknown
 
-from .figures.course_stability import loop, pull_out, spiral
-from .figures.handling import turn_on_the_spot, williamson
+from .figures.course_stability import loop, pull_out, spiral, stability
+from .figures.criteria import SHIP, Verdict, imo
+from .figures.handling import station_box, turn_on_the_spot, williamson
 from .figures.nomoto import nomoto
 from .figures.record import Array, Record
 from .figures.result import Figure, Figures
-from .figures.straight import acceleration, stopping
+from .figures.straight import acceleration, bollard_pull, speed_trial, stopping
 from .figures.turning import turning_circle
-from .figures.vertical import depth_step
+from .figures.vertical import depth_step, pitch_zig_zag
 from .figures.zigzag import initial_turning, zig_zag
 
 
@@ -43,6 +44,12 @@ class Done:
     """Helm that was ordered, where that is known."""
     full_helm: float = math.radians(35.0)
     """The most helm that there is."""
+    window: float = 60.0
+    """How long all is steady at the end of an order, s."""
+    side: str = ""
+    """Of the first order, where that is known."""
+    criteria: str = "none"
+    """imo; of ships of 100 m and more, length; none."""
 
     @property
     def first(self) -> float | None:
@@ -76,6 +83,19 @@ def criteria_name(done: Done) -> str:
     if done.helm is None or usual is None or math.isclose(done.helm, usual, rel_tol=1e-6):
         return name
     return f"{name} with a helm of {math.degrees(done.helm):g} deg"
+
+
+def verdicts_of(done: Done, found: Figures) -> list[Verdict]:
+    """Return the verdicts of MSC.137(76) on figures, if it is for the vessel: see `Done.criteria`.
+
+    Raises InputError for a speed of none.
+    """
+    is_ship = done.length is not None and done.length >= SHIP
+    if done.length is None or not (
+        done.criteria == "imo" or (done.criteria == "length" and is_ship)
+    ):
+        return []
+    return imo({criteria_name(done): found}, done.length, approach_speed_of(done, found))
 
 
 def approach_speed_of(done: Done, figures: Figures) -> float:
@@ -113,15 +133,38 @@ def _after(record: Record, order: float | None) -> Record:
 
 def _spiral(done: Done) -> Figures:
     found = loop(*spiral_curve(done))
-    values = {"loop_height": Figure(found.height, "1"), "loop_width": Figure(found.width, "rad")}
+    unit = "rad/s" if done.length is None else "1"
+    values = {"loop_height": Figure(found.height, unit), "loop_width": Figure(found.width, "rad")}
     return Figures("spiral", values)
 
 
+def _reverse_spiral(done: Done) -> Figures:
+    found = stability(*spiral_curve(done))
+    values = {
+        "neutral_helm": Figure(found.neutral_helm, "rad"),
+        "helm_per_rate": Figure(found.slope, "s" if done.length is None else "rad"),
+        "loop_width": Figure(found.width, "rad"),
+    }
+    return Figures("reverse spiral", values)
+
+
 def spiral_curve(done: Done) -> tuple[Array, Array]:
-    """Return helm, rad, and r' of the steps of a spiral. Raises InputError without a length."""
-    if done.length is None:
-        raise InputError("spiral: the length of the ship is needed, for r' = r L / U")
-    return spiral(_after(done.record, done.first), done.length)
+    """Return helm, rad, and r' of the steps of a spiral; without a length the rate, rad/s."""
+    orders = done.orders if done.kind == "reverse-spiral" else ()
+    return spiral(_after(done.record, done.first), done.length, orders)
+
+
+def _speed_trial(done: Done) -> Figures:
+    ends = [*done.orders[1:], done.record.end]
+    runs = [(max(end - done.window, first), end)
+            for first, end in zip(done.orders[::2], ends[::2], strict=True)]  # fmt: skip
+    return speed_trial(done.record, runs)
+
+
+def _station(done: Done) -> Figures:
+    record = _after(done.record, done.needed())
+    north, east = done.record.place(done.record.start)
+    return station_box(record, float(north), float(east), float(done.record.heading[0]))
 
 
 def _depth_step(done: Done) -> Figures:
@@ -136,11 +179,16 @@ FIGURES: Mapping[str, Callable[[Done], Figures]] = {
     "initial-turning": lambda done: initial_turning(done.record, done.heading, done.first),
     "pull-out": lambda done: pull_out(_after(done.record, done.needed(0)), done.needed(1)),
     "spiral": _spiral,
+    "reverse-spiral": _reverse_spiral,
     "crash-stop": lambda done: stopping(done.record, done.needed()),
     "stopping": lambda done: stopping(done.record, done.needed(), done.share),
     "acceleration": lambda done: acceleration(done.record, done.needed()),
+    "speed-trial": _speed_trial,
     "williamson": lambda done: williamson(done.record, done.first),
     "turn-on-the-spot": lambda done: turn_on_the_spot(done.record, done.first),
+    "bollard-pull": lambda done: bollard_pull(done.record, done.needed()),
+    "station-keeping": _station,
     "depth-step": _depth_step,
+    "vertical-zig-zag": lambda done: pitch_zig_zag(done.record, done.heading, done.needed()),
 }
 """Manoeuvres, and their figures."""

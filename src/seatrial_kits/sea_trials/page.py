@@ -1,26 +1,33 @@
-"""One page, and one JSON file, of all sea trials of a vehicle."""
+"""One page, one JSON file and one table of all sea trials of a vehicle."""
 
 from __future__ import annotations
 
+import csv
+import io
 import json
-from collections.abc import Sequence
-from dataclasses import asdict, dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
 
 from seatrial.errors import InputError
 from seatrial.model.readable import number
+from seatrial.trial.campaigns.further_page import Written
 from seatrial.trial.records.run_folder import MANIFEST, Run, load_run
+from seatrial.trial.records.run_schema import CAMPAIGN, checked_json
+from seatrial.trial.reports.campaign_report import CAMPAIGN as INDEX
 from seatrial.trial.reports.report import render
 from seatrial.whole_file import write_whole
 
-from .drawing import drawings, rows_of, track
-from .evaluation import Done, approach_speed_of, criteria_name, figures_of
-from .figures.criteria import Verdict, imo
+from .curves import drawn_together, spiral_figure
+from .drawing import rows_of
+from .evaluation import Done, figures_of, verdicts_of
+from .figures.criteria import Verdict
 from .figures.result import Figures
 from .run_record import done_in
 
-PAGE, DATA = "sea-trials.html", "sea-trials.json"
+PAGE, DATA, TABLE = "sea-trials.html", "sea-trials.json", "sea-trials.csv"
+_COLUMNS = ("trial", "side", "figure", "value", "unit", "lengths", "missing")
 
 
 @dataclass(frozen=True)
@@ -34,14 +41,9 @@ class Evaluated:
     verdicts: list[Verdict]
 
     @property
-    def name(self) -> str:
-        """The trial, and the side of its first order."""
-        side = next(
-            (str(entry["parameters"]["side"]["value"])
-             for entry in self.run.manifest["components"].values() if entry["fmu"] == "manoeuvre"),
-            "",
-        )  # fmt: skip
-        return f"{self.run.name}, {side}" if side else self.run.name
+    def side(self) -> str:
+        """The side of the first order, empty if it is not known."""
+        return "" if self.done is None else self.done.side
 
 
 def run_folders(places: Sequence[Path]) -> list[Path]:
@@ -61,25 +63,40 @@ def run_folders(places: Sequence[Path]) -> list[Path]:
     return folders
 
 
-def evaluated(folder: Path, criteria: str | None) -> Evaluated:
-    """Return a run with its figures; ``criteria`` is None or imo."""
+def evaluated(folder: Path, criteria: str | None = None) -> Evaluated:
+    """Return a run with its figures; ``criteria``, imo, replaces those of the vehicle."""
     run = load_run(folder)
     try:
         done = done_in(run)
+        if criteria is not None:
+            done = replace(done, criteria=criteria)
         found = figures_of(done)
     except InputError as error:
         return Evaluated(run, None, None, str(error), [])
-    verdicts: list[Verdict] = []
-    if criteria is not None and done.length is not None:
-        speed = approach_speed_of(done, found)
-        verdicts = imo({criteria_name(done): found}, done.length, speed)
-    return Evaluated(run, done, found, "", verdicts)
+    return Evaluated(run, done, found, "", verdicts_of(done, found))
 
 
-def write_pages(trials: Sequence[Evaluated], folder: Path) -> Path:
-    """Write ``sea-trials.html`` and ``sea-trials.json`` into a folder, return the page's path.
+def campaign_page(folder: Path) -> Written:
+    """Write the page of a campaign's folder: see `write_pages`. Raises InputError."""
+    left_out = checked_json(folder / INDEX, CAMPAIGN).get("left_out", {})
+    trials = [evaluated(each) for each in run_folders([folder])]
+    path = write_pages(trials, folder, left_out)
+    return Written(path, [what for trial in trials for what in failed(trial)])
 
-    Raises InputError for runs of different vehicles.
+
+def failed(trial: Evaluated) -> list[str]:
+    """Return the criteria that a run does not hold."""
+    side = f", {trial.side}" if trial.side else ""
+    return [f"{verdict.ability}{side}" for verdict in trial.verdicts if not verdict.passed]
+
+
+def write_pages(
+    trials: Sequence[Evaluated], folder: Path, left_out: Mapping[str, str] | None = None
+) -> Path:
+    """Write page, JSON file and table into a folder, and return the page's path.
+
+    ``left_out`` has trials that do not apply, and why. Raises InputError for runs of different
+    vehicles.
     """
     vehicles = {str(trial.run.manifest["choices"].get("vehicle", "")) for trial in trials}
     if len(vehicles) != 1:
@@ -87,34 +104,51 @@ def write_pages(trials: Sequence[Evaluated], folder: Path) -> Path:
             f"runs of one vehicle are needed for a page, found {', '.join(sorted(vehicles))}"
         )
     (vehicle,) = vehicles
-    dones = [trial.done for trial in trials if trial.done is not None]
-    circles = [done for done in dones if done.kind == "turning-circle"]
-    length = next((done.length for done in dones if done.length is not None), None)
+    length = next((t.done.length for t in trials if t.done and t.done.length is not None), None)
+    names = dict.fromkeys(trial.run.name for trial in trials)
     page = render(
         "sea_trials.html.j2",
         title=f"Sea trials of {vehicle}" if vehicle else "Sea trials",
         length=None if length is None else f"{number(length)} m",
         criteria=[_criterion(trial, verdict) for trial in trials for verdict in trial.verdicts],
-        tracks=track(circles).json() if len(circles) > 1 else None,
-        trials=[_shown(trial) for trial in trials],
+        trials=[_section(name, [t for t in trials if t.run.name == name]) for name in names],
+        spirals=_spirals(trials),
+        left_out=left_out or {},
     )
     write_whole(folder / DATA, json.dumps([_data(trial) for trial in trials], indent=2) + "\n")
+    write_whole(folder / TABLE, _table(trials))
     write_whole(folder / PAGE, page)
     return folder / PAGE
 
 
-def _shown(trial: Evaluated) -> dict[str, Any]:
-    if trial.done is None or trial.found is None:
-        return {"name": trial.name, "error": trial.error, "rows": [], "drawings": []}
-    drawn = [figure.json() for title, figure in drawings(trial.done, trial.found)
-             if not title.endswith(": figures")]  # fmt: skip
-    rows = rows_of(trial.found, trial.done.length)
-    return {"name": trial.name, "error": "", "rows": rows, "drawings": drawn}
+def _section(name: str, runs: Sequence[Evaluated]) -> dict[str, Any]:
+    """Return a manoeuvre to both sides: rows with a cell for each, and what is drawn."""
+    whole = [
+        (run.done, run.found) for run in runs if run.done is not None and run.found is not None
+    ]
+    cells = [{row[0]: row[1:] for row in rows_of(found, done.length)} for done, found in whole]
+    rows = dict.fromkeys(name for column in cells for name in column)
+    return {
+        "name": name,
+        "title": runs[0].run.manifest["trial"].get("title", ""),
+        "errors": [f"{run.side} {run.error}".strip() for run in runs if run.error],
+        "sides": [done.side if len(whole) > 1 else "" for done, _ in whole],
+        "rows": [(row, [column.get(row, ("", "")) for column in cells]) for row in rows],
+        "notes": list(dict.fromkeys(note for _, found in whole for note in found.notes)),
+        "drawings": [(t, f.json()) for t, f in drawn_together(whole)] if whole else [],
+    }
+
+
+def _spirals(trials: Sequence[Evaluated]) -> str | None:
+    """Return direct and reverse spiral in one drawing, if there are both."""
+    spirals = [t.done for t in trials if t.done and t.done.kind in ("spiral", "reverse-spiral")]
+    return spiral_figure(spirals).json() if len(spirals) > 1 else None
 
 
 def _criterion(trial: Evaluated, verdict: Verdict) -> dict[str, Any]:
     return {
-        "trial": trial.name,
+        "trial": trial.run.name,
+        "side": trial.side,
         "ability": verdict.ability,
         "value": number(verdict.value),
         "limit": number(verdict.limit),
@@ -130,8 +164,28 @@ def _data(trial: Evaluated) -> dict[str, Any]:
     found = {} if trial.found is None else trial.found.as_dict()
     return {
         "trial": trial.run.name,
+        "side": trial.side,
         "folder": str(trial.run.folder.name),
+        "length": None if trial.done is None else trial.done.length,
         **found,
         "error": trial.error or None,
         "criteria": verdicts,
     }
+
+
+def _table(trials: Sequence[Evaluated]) -> str:
+    """Return a row for each figure, in SI, as CSV."""
+    text = io.StringIO()
+    rows = csv.writer(text, lineterminator="\n")
+    rows.writerow(_COLUMNS)
+    for trial in trials:
+        begin = (trial.run.name, trial.side)
+        if trial.found is None or trial.done is None:
+            rows.writerow((*begin, "", "", "", "", trial.error))
+            continue
+        lengths = trial.found.in_lengths(trial.done.length) if trial.done.length else {}
+        for name, figure in trial.found.found.items():
+            rows.writerow((*begin, name, figure.value, figure.unit, lengths.get(name, ""), ""))
+        for name, why in trial.found.missing.items():
+            rows.writerow((*begin, name, "", "", "", why))
+    return text.getvalue()

@@ -14,8 +14,8 @@ from .evaluation import Done
 from .figures.record import Array, Record
 
 COMPONENT = "manoeuvre"
-_LENGTHS = ("length", "hull_length")
-"""Parameters of a craft that are its length, the best first."""
+_LENGTHS = ("length", "outline", "hull_size.x", "hull_length")
+"""Where the length of a craft is, the best first: parameters, and that of its outline."""
 
 
 def has_manoeuvre(run: Run) -> bool:
@@ -42,15 +42,21 @@ def done_in(run: Run) -> Done:
     depth = None
     if values["kind"] == "depth-step":
         depth = float(values["depth_start"]) + float(values["depth_change"])
+    measured = {
+        "roll": run.signals.get(f"{craft}.attitude.phi"),
+        "pitch": run.signals.get(f"{craft}.attitude.theta"),
+        "power": run.signals.get(f"{name}.total_power"),
+        "pull": run.signals.get(f"{name}.pull"),
+    }
     record = Record(
         run.time,
         _signal(run, f"{craft}.position.x"),
         _signal(run, f"{craft}.position.y"),
         _signal(run, f"{craft}.attitude.psi"),
         _signal(run, f"{name}.helm_order") * float(values["full_helm"]),
-        roll=run.signals.get(f"{craft}.attitude.phi"),
-        pitch=run.signals.get(f"{craft}.attitude.theta"),
         depth=run.signals.get(f"{craft}.position.z"),
+        # What a model does not have, or no connection brings, is 0.
+        **{key: value for key, value in measured.items() if value is not None and value.any()},
     )
     return Done(
         values["kind"],
@@ -62,6 +68,9 @@ def done_in(run: Run) -> Done:
         length=_length(_entry(run, craft)),
         helm=min(float(values["helm"]), float(values["full_helm"])),
         full_helm=float(values["full_helm"]),
+        window=float(values["window"]),
+        side=str(values["side"]),
+        criteria=str(values["criteria"]),
         beam=_entry(run, craft).get("outline", {}).get("beam"),
     )
 
@@ -105,8 +114,11 @@ def _entry(run: Run, name: str) -> Mapping[str, Any]:
 
 
 def _length(craft: Mapping[str, Any]) -> float | None:
+    # Those of the vehicle's file have a mark: the component's own start values tell nothing of it.
+    found = {name: each["value"] for name, each in craft["parameters"].items() if each.get("mark")}
+    found["outline"] = craft.get("outline", {}).get("length")
     for name in _LENGTHS:
-        value = craft["parameters"].get(name, {}).get("value")
+        value = found.get(name)
         if isinstance(value, float) and value > 0.0:
             return value
     return None

@@ -18,7 +18,8 @@ def manoeuvre(run: Run) -> Iterator[tuple[str, str]]:
     if all(entry["fmu"] != _COMPONENT for entry in run.manifest["components"].values()):
         return
     # Every report asks: those of other runs go without SciPy.
-    from .drawing import drawings, table
+    from .curves import drawings
+    from .drawing import table
     from .evaluation import figures_of
     from .run_record import done_in, has_manoeuvre
 

@@ -9,9 +9,11 @@ from seatrial.errors import InputError
 from seatrial_kits.sea_trials.figures.record import Record
 from seatrial_kits.sea_trials.figures.straight import (
     acceleration,
+    bollard_pull,
     mean_of_means,
     run_speed,
     speed_power,
+    speed_trial,
     stopping,
 )
 
@@ -95,6 +97,44 @@ def test_one_run_has_no_mean_of_means():
 def test_a_cubic_speed_power_curve():
     speeds = np.array([4.0, 6.0, 8.0])
     assert speed_power(speeds, 120.0 * speeds**3) == pytest.approx((120.0, 3.0))
+
+
+@pytest.mark.parametrize("sides", [(0.3, 0.0), (0.3, 0.2)])
+def test_a_speed_trial_in_a_current_has_the_speeds_through_the_water(sides):
+    along, across = sides
+    time = np.arange(0.0, 401.0, 1.0)
+    speed = np.where(time < 200.0, 8.0, 6.0)
+    corners = [[100.0 * n - 5.0, 100.0 * n + 5.0] for n in (1, 2, 3)]
+    turned = np.interp(time, np.ravel(corners), np.pi * np.array([0, 1, 1, 2, 2, 3]))
+    course = COURSE + turned
+    north = np.cumsum(speed * np.cos(course) + along * np.cos(COURSE) - across * np.sin(COURSE))
+    east = np.cumsum(speed * np.sin(course) + along * np.sin(COURSE) + across * np.cos(COURSE))
+    rec = Record(time, north, east, course, power=20.0 * speed**3)
+    found = speed_trial(rec, [(100.0 * n + 20.0, 100.0 * n + 80.0) for n in range(4)])
+    assert (found["speed_1"], found["speed_2"]) == pytest.approx((8.0, 6.0), rel=1e-6)
+    assert found["power_1"] == pytest.approx(20.0 * 8.0**3)
+    assert found["speed_power_exponent"] == pytest.approx(3.0, rel=1e-5)
+    assert found["power_at_unit_speed"] == pytest.approx(20.0, rel=1e-4)
+
+
+def test_a_speed_trial_without_power_has_speeds_and_says_so():
+    time = np.arange(0.0, 200.0, 1.0)
+    found = speed_trial(straight(time, 5.0 * time), [(0.0, 50.0), (60.0, 100.0)])
+    assert found["speed_1"] == pytest.approx(5.0)
+    assert found.missing["power_at_unit_speed"] == "the record has no power"
+    with pytest.raises(InputError, match="runs by twos are needed, found 1"):
+        speed_trial(straight(time, 5.0 * time), [(0.0, 50.0)])
+
+
+def test_the_bollard_pull_is_that_after_the_surge_into_the_line():
+    time = np.arange(0.0, 400.0, 0.5)
+    swing = 1.0 - np.exp(-0.05 * time) * np.cos(0.5 * time)
+    found = bollard_pull(Record(time, 0.0 * time, 0.0 * time, 0.0 * time, pull=240.0 * swing), 0.0)
+    assert found["bollard_pull"] == pytest.approx(240.0, rel=1e-4)
+    # The first overshoot of e^-at (cos bt): at bt = pi - atan(a/b).
+    at = (math.pi - math.atan(0.1)) / 0.5
+    peak = 240.0 * (1.0 - math.exp(-0.05 * at) * math.cos(0.5 * at))
+    assert found["largest_pull"] == pytest.approx(peak, rel=1e-2)
 
 
 def test_speed_and_power_over_a_mile():

@@ -1,5 +1,6 @@
 """seatrial trials figures, and a manoeuvre of a shipped vehicle."""
 
+import csv
 import json
 
 import pytest
@@ -8,6 +9,11 @@ from tests.command import seatrial
 
 from .references import FIGURES, FOLDER
 
+CAMPAIGN = """
+trials    = ["turning-circle", "depth-step"]
+condition = "sea-trials"
+page      = "sea-trials"
+"""
 NAMES = "time=t,north=x,east=y,heading=psi,helm=delta"
 TURN = "kvlcc2_full_turn_m35"
 
@@ -18,15 +24,19 @@ def figures(*arguments, cwd):
 
 @pytest.fixture(scope="module")
 def run(tmp_path_factory):
-    """Return the folder of a turning circle of the Otter, approach and turn cut short."""
+    """Return the folder of a turning circle of the Otter, in that of a campaign, cut short."""
     folder = tmp_path_factory.mktemp("trials")
-    settings = ("autopilot.manoeuvre.window=10 s", "autopilot.manoeuvre.turn=400 deg")
+    (folder / "short.toml").write_text(CAMPAIGN, "utf-8")
+    settings = ("autopilot.manoeuvre.window=10 s", "autopilot.manoeuvre.turn=400 deg",
+                "autopilot.manoeuvre.criteria=imo")  # fmt: skip
     done = seatrial(
-        "run", "turning-circle", "--vehicle", "otter", "--engine", "direct", "-o", "run",
+        "run", "short.toml", "--vehicle", "otter", "--engine", "direct", "-o", "runs",
         *(part for text in settings for part in ("--set", text)), cwd=folder,
     )  # fmt: skip
     assert done.returncode == 0, done.stderr
-    return folder / "run"
+    assert "page: runs/sea-trials.html" in done.stdout
+    assert "depth-step is left out: its pilot holds no depth" in done.stdout
+    return folder / "runs/01-turning-circle"
 
 
 def test_figures_of_a_csv_file_against_the_criteria(tmp_path):
@@ -70,7 +80,6 @@ def test_a_run_needs_no_manoeuvre(run, tmp_path):
         ([], "--manoeuvre: one of turning-circle, "),
         (["--manoeuvre", "circle"], "unknown manoeuvre 'circle'"),
         (["--manoeuvre", "crash-stop"], "crash-stop: the time of the order is needed"),
-        (["--manoeuvre", "spiral"], "spiral: the length of the ship is needed"),
         (["--manoeuvre", "turning-circle", "--criteria", "abs"], "unknown set 'abs'"),
         (["--manoeuvre", "turning-circle", "--criteria", "imo"], "--length"),
         (["--manoeuvre", "turning-circle", "--length", "0 m"], "a length above 0"),
@@ -84,18 +93,26 @@ def test_bad_options_are_refused(tmp_path, arguments, message):
 
 
 def test_one_page_of_all_trials_of_a_vehicle(run, tmp_path):
-    done = seatrial("trials", "page", str(run.parent), "-o", "page", "--criteria", "imo",
-                    cwd=tmp_path)  # fmt: skip
-    assert done.returncode == 0, done.stderr
-    page = (tmp_path / "page/sea-trials.html").read_text("utf-8")
-    for text in ("Sea trials of otter", "turning-circle, starboard", "turning: advance", "margin"):
+    page = (run.parent / "sea-trials.html").read_text("utf-8")
+    for text in ("Sea trials of otter", "turning: advance", "margin", "its pilot holds no depth"):
         assert text in page
-    (trial,) = json.loads((tmp_path / "page/sea-trials.json").read_text("utf-8"))
+    (trial,) = json.loads((run.parent / "sea-trials.json").read_text("utf-8"))
+    with (run.parent / "sea-trials.csv").open() as file:
+        rows = {row["figure"]: row for row in csv.DictReader(file)}
+    assert float(rows["advance"]["value"]) == trial["figures"]["advance"]["value"]
+    assert float(rows["advance"]["lengths"]) == trial["figures"]["advance"]["value"] / 2.0
+    assert rows["steady_diameter"]["missing"].endswith("540 deg are needed")
     assert trial["trial"] == "turning-circle"
     (advance, diameter) = trial["criteria"]
-    assert advance["value"] == pytest.approx(trial["figures"]["advance"]["value"] / 2.066)
+    assert advance["value"] == pytest.approx(trial["figures"]["advance"]["value"] / 2.0)
     assert advance["margin"] == pytest.approx(4.5 - advance["value"])
     assert diameter["limit"] == 5.0
+
+
+def test_the_page_of_runs_elsewhere_is_without_criteria_that_are_not_for_the_craft(run, tmp_path):
+    done = seatrial("trials", "page", str(run), "-o", "page", "--criteria", "none", cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert json.loads((tmp_path / "page/sea-trials.json").read_text("utf-8"))[0]["criteria"] == []
 
 
 def test_a_report_has_the_manoeuvre(run):

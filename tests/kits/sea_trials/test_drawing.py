@@ -7,8 +7,12 @@ import numpy as np
 import plotly.graph_objects as go
 import pytest
 
-from seatrial_kits.sea_trials.drawing import drawings, heading_and_helm, rows_of, track
+from seatrial_kits.sea_trials.curves import drawings
+from seatrial_kits.sea_trials.drawing import heading_and_helm, rows_of, track
 from seatrial_kits.sea_trials.evaluation import Done, figures_of
+from seatrial_kits.sea_trials.figures.record import Record
+from seatrial_kits.sea_trials.figures.result import Figure, Figures
+from seatrial_kits.sea_trials.orders import KINDS
 
 from .references import FIGURES, columns, record
 
@@ -44,6 +48,23 @@ def test_the_track_is_in_ship_lengths(turn):
     first = np.column_stack((outlines["x"], outlines["y"]))[:6]
     assert np.ptp(first[:, 1]) == pytest.approx(1.0)
     assert np.ptp(first[:, 0]) == pytest.approx(58.0 / 320.0)
+
+
+def test_every_other_manoeuvre_is_drawn():
+    time = np.arange(0.0, 400.0, 1.0)
+    turned = 0.02 * np.maximum(time - 60.0, 0.0)
+    rec = Record(time, 5.0 * time, 0.1 * time, turned, np.where(time < 60.0, 0.0, 0.3),
+                 pitch=0.2 * np.sin(0.1 * time), depth=5.0 + np.sin(0.1 * time),
+                 pull=100.0 + time, power=50.0 + time)  # fmt: skip
+    found = Figures("any", {"radius_95": Figure(3.0, "m"), "speed_1": Figure(2.0, "m/s"),
+                            "power_1": Figure(9.0, "W"), "speed_2": Figure(1.0, "m/s"),
+                            "power_2": Figure(1.0, "W")})  # fmt: skip
+    orders = (60.0, 120.0, 180.0, 240.0)
+    for kind in sorted(KINDS.keys() - {"spiral"}):
+        done = Done(kind, rec, orders, length=5.0)
+        for title, figure in drawings(done, found):
+            assert title
+            assert drawn(figure).layout.height > 0
 
 
 def test_without_a_length_the_track_is_in_metres():

@@ -24,10 +24,11 @@ class Thruster(PulseRange, Actuator):
         thrust = F(pulse) (V / 16 V)^1.15,    current = I(pulse) (V / 16 V)^1.15
         speed = n(pulse) (V / 16 V)^(1.15 / 2)
 
-    and all follow it with a first-order lag, solved exactly for the pulse held over a step:
-    y(t + h) = y_inf + (y(t) - y_inf) exp(-h / time_constant). So no output reacts to an input at
-    the same instant. The speed is for telemetry: its exponent is the thrust's with the thrust of
-    a propeller going by the square of its speed, and while it changes that square is not kept.
+    and all follow it with a first-order lag, solved exactly for the pulse held over a step: y(t +
+    h) = y_inf + (y(t) - y_inf) exp(-h / time_constant). So no output reacts to an input at the same
+    instant, but the power, voltage times current. The speed is for telemetry: its exponent is the
+    thrust's with the thrust of a propeller going by the square of its speed, and while it changes
+    that square is not kept.
 
     **Signal.** Dead band of the table: 1472 to 1528 us gives nothing. Beyond ``pulse_min`` and
     ``pulse_max`` the controller is at full power. A width of 0, or outside 800 to 2200 us, is
@@ -61,6 +62,7 @@ class Thruster(PulseRange, Actuator):
     supply_voltage = Input("V", "voltage at the speed controller", start=16.0, optional=True)
     thrust = Output("N", "thrust along the axis, positive ahead")
     current = Output("A", "supply current")
+    power = Output("W", "power drawn from the supply")
     speed = Output("rad/s", "angular velocity of the propeller, positive ahead")
 
     def start(self, t: float) -> None:
@@ -83,8 +85,9 @@ class Thruster(PulseRange, Actuator):
         self._speed = speed + (self._speed - speed) * kept
 
     def outputs(self, t: float) -> None:
-        """Publish thrust, current and speed."""
+        """Publish thrust, current, power and speed."""
         self.thrust, self.current, self.speed = self._thrust, self._current, self._speed
+        self.power = max(self.supply_voltage, 0.0) * self._current
 
     def _table_pulse(self, pulse: float) -> float:
         """Return the pulse that has the same effect in the table's calibration, s."""

@@ -4,18 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import closing
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import Any, Literal
 
 from pydantic import Field
 
 from ...errors import InputError, unknown
+from ...plugins import Registry
 from ...system.fault_entry import FaultEntry
 from ...system.files import FileModel, Source, find_file, read_toml, validated
 from ...system.system import Engine
 from ..files.map_entry import MapEntry
-from ..files.trial import Trial, load_trial
+from ..files.trial import Trial, is_choice, load_trial
 from ..running.hooks import Hooks
 from ..running.output import claim_folder, write_json
 from ..running.resuming import has_index, kept_results
@@ -28,6 +29,10 @@ from .questions import Questions
 from .stopping_rule import StoppingRule
 
 INDEX = "campaign.json"
+CONDITIONS = Registry("seatrial.conditions", "condition of campaigns", {})
+"""Functions of kits: of a `Trial`, why it does not apply to its rig, None if it does."""
+PAGES = Registry("seatrial.pages", "page of campaigns", {})
+"""Functions of kits that write a page into a campaign's folder, and return it: `Written`."""
 _UNWRITTEN = 0.01
 """Share of the cases in the index that may have ended since it was written, while others run.
 
@@ -67,6 +72,10 @@ class CampaignFile(FileModel):
     samples: int = Field(default=0, ge=0)
     """With ``keep``: one case in so many keeps its folder whatever becomes of it."""
     until: StoppingRule | None = None
+    condition: str | None = None
+    """Of a kit: what says which trials do not apply, and why; they are left out."""
+    page: str | None = None
+    """Of a kit: a page of all run folders, beside the report."""
     ask: Questions | None = None
     """Settings of the questions that can be asked."""
     map: MapEntry | None = None
@@ -81,6 +90,10 @@ class Campaign:
     read_from: Source
     trials: tuple[Trial, ...]
     """Those of ``file.trials``, in that order."""
+    changes: Mapping[str, Any] = field(default_factory=dict)
+    """What was set in place of what the file says."""
+    left_out: Mapping[str, str] = field(default_factory=dict)
+    """Why trials of the file do not apply, by their names."""
 
     @property
     def has_table(self) -> bool:
@@ -95,6 +108,11 @@ class Campaign:
         pairs = zip(self.trials, self.file.trials, strict=True)
         return Cases(self._block(trial, entry, rows) for trial, entry in pairs)
 
+    @property
+    def setter(self) -> str:
+        """Who sets what all cases set, for messages."""
+        return f"{self.read_from.path}: set" + (", --set" if self.changes else "")
+
     def _block(self, trial: Trial, entry: str | TrialEntry, rows: list[dict[str, Any]]) -> Block:
         file, origin = self.file, str(self.read_from.path)
         own = TrialEntry(trial=entry) if isinstance(entry, str) else entry
@@ -105,7 +123,7 @@ class Campaign:
         if FAULTS in keys and (lost := {row[FAULTS] for row in rows} - file.faults.keys()):
             said = unknown("name of faults", min(lost), file.faults)
             raise InputError(f"{origin}: design: {FAULTS}: {said}")
-        base = trial.changed(common, f"{origin}: set")
+        base = trial.changed(common, self.setter)
         return Block(
             replace(base, figures=tuple(file.figures)),
             common,
@@ -119,22 +137,76 @@ class Campaign:
         )
 
 
-def load_campaign(name: str) -> Campaign:
+def load_campaign(name: str, changes: Mapping[str, Any] | None = None) -> Campaign:
     """Read the campaign ``name`` (shipped, in ``harness/campaigns``, or a path).
 
-    Raises InputError for anything wrong in it or in its trials.
+    ``changes`` are set in all cases, in place of what its file sets; keys are those of
+    `Trial.changed`. Trials that do not apply, by its ``condition``, are left out.
+
+    Raises InputError for anything wrong in it or in its trials, for a change of a key that has
+    several values, and if no trial applies.
     """
     path = find_file("harness/campaigns", name)
     content, read_from = read_toml(path)
-    file = validated(CampaignFile, content, path)
+    file = _with(validated(CampaignFile, content, path), changes or {}, path)
+    if file.page is not None:
+        _named(PAGES.target, file.page, f"{path}: page")
+    chosen = {key: value for key, value in (changes or {}).items() if is_choice(key)}
     trials = []
     for entry in file.trials:
         name = entry if isinstance(entry, str) else entry.trial
         try:
-            trials.append(load_trial(name, path.parent))
+            trials.append(load_trial(name, path.parent, chosen, "--choose"))
         except InputError as error:
             raise InputError(f"{path}: trials: {error}") from None
-    return Campaign(file, read_from, tuple(trials))
+    return _applying(Campaign(file, read_from, tuple(trials), changes or {}))
+
+
+def _with(file: CampaignFile, changes: Mapping[str, Any], path: Path) -> CampaignFile:
+    """Return a campaign's file with ``changes`` in place of what it, and its trials, set."""
+    entries: list[str | TrialEntry] = []
+    for entry in file.trials:
+        grids = [file.grid] if isinstance(entry, str) else [file.grid, entry.grid]
+        for key in changes:
+            if any(key in grid for grid in grids):
+                raise InputError(f"{path}: grid: {key} has a list of values here: it cannot be set")
+        if not isinstance(entry, str):
+            own = {key: value for key, value in entry.set.items() if key not in changes}
+            entry = entry.model_copy(update={"set": own})
+        entries.append(entry)
+    return file.model_copy(update={"trials": entries, "set": {**file.set, **changes}})
+
+
+def _named(look_up: Callable[[str], Any], name: str, where: str) -> Any:
+    try:
+        return look_up(name)
+    except InputError as error:
+        raise InputError(f"{where}: {error}") from None
+
+
+def _applying(campaign: Campaign) -> Campaign:
+    """Return a campaign without the trials that do not apply. Raises InputError without any."""
+    file = campaign.file
+    if file.condition is None:
+        return campaign
+    where = f"{campaign.read_from.path}: condition"
+    for grid in (file.grid, *(e.grid for e in file.trials if isinstance(e, TrialEntry))):
+        for key in filter(is_choice, grid):
+            raise InputError(f"{where}: grid has values of {key}: one rig is needed")
+    reason_of = _named(CONDITIONS.load, file.condition, where)
+    kept, left_out = [], {}
+    for trial, entry in zip(campaign.trials, file.trials, strict=True):
+        own = {} if isinstance(entry, str) else entry.set
+        reason = reason_of(trial.changed({**file.set, **own}, campaign.setter))
+        if reason is None:
+            kept.append((trial, entry))
+        else:
+            left_out[trial.name] = reason
+    if not kept:
+        reasons = ", ".join(dict.fromkeys(left_out.values()))
+        raise InputError(f"{campaign.read_from.path}: no trial applies: {reasons}")
+    file = file.model_copy(update={"trials": [entry for _, entry in kept]})
+    return replace(campaign, file=file, trials=tuple(t for t, _ in kept), left_out=left_out)
 
 
 def run_campaign(
@@ -221,5 +293,11 @@ def _write_index(
         }
         for number, result in sorted(results.items())
     ]
-    index = {"name": campaign.read_from.name, "title": campaign.file.title, "cases": rows}
+    index = {
+        "name": campaign.read_from.name,
+        "title": campaign.file.title,
+        "page": campaign.file.page,
+        "left_out": campaign.left_out,
+        "cases": rows,
+    }
     write_json(out / INDEX, index, synced=True)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import io
+import json
 import os
 import tarfile
 import tempfile
@@ -35,7 +36,8 @@ def packed(campaign: Campaign) -> bytes:
     place = here.relative_to(top).as_posix() if top and here.is_relative_to(top) else "."
     stream, total = io.BytesIO(), 0
     with tarfile.open(fileobj=stream, mode="w", format=tarfile.PAX_FORMAT) as archive:
-        _add(archive, "campaign", f"{__version__}\n{name}\n{place}".encode())
+        changes = json.dumps(dict(campaign.changes))
+        _add(archive, "campaign", f"{__version__}\n{name}\n{place}\n{changes}".encode())
         for path in _files(top) if top is not None else ():
             assert top is not None
             data = path.read_bytes()
@@ -67,14 +69,15 @@ def _unpacked(_sha256: str, data: bytes) -> tuple[Campaign, Path]:
     folder = Path(_folders[-1].name)
     with tarfile.open(fileobj=io.BytesIO(data)) as archive:
         archive.extractall(folder, filter="data")
-    version, name, place = (folder / "campaign").read_text("utf-8").split("\n")
+    version, name, place, changes = (folder / "campaign").read_text("utf-8").split("\n")
     if version != __version__:
         raise InputError(f"the worker has seatrial {__version__}, the campaign is of {version}")
     top = folder / "files"
     home = top / place
     home.mkdir(parents=True, exist_ok=True)
     with chdir(home):
-        return load_campaign(str(top / name) if name.endswith(".toml") else name), home
+        path = str(top / name) if name.endswith(".toml") else name
+        return load_campaign(path, json.loads(changes)), home
 
 
 def pack_folder(folder: Path) -> bytes:

@@ -222,7 +222,7 @@ class Trial:
         choices = {**self.file.choices, **choices_in(changes, origin)}
         of_processes, of_faults = dict[str, Any](), dict[str, Any]()
         for key, value in changes.items():
-            if key.startswith(_CHOICES):
+            if is_choice(key):
                 own["choices"] = choices
             elif key.endswith(KEY_END):
                 of_processes[key] = value
@@ -328,9 +328,14 @@ def _unexpected(criterion: dict[str, Any]) -> dict[str, Any]:
     return {key: value for key, value in criterion.items() if key not in ("expect", "why")}
 
 
+def is_choice(key: str) -> bool:
+    """Return whether a key of settings is that of a choice."""
+    return key.startswith(_CHOICES)
+
+
 def choices_in(changes: Mapping[str, Any], origin: str) -> dict[str, str]:
     """Return the choices among settings, by name. Raises InputError for one that is no text."""
-    found = {k.removeprefix(_CHOICES): v for k, v in changes.items() if k.startswith(_CHOICES)}
+    found = {k.removeprefix(_CHOICES): v for k, v in changes.items() if is_choice(k)}
     for name, value in found.items():
         if not isinstance(value, str):
             raise InputError(f"{origin}: {_CHOICES}{name}: a text is needed, found {value!r}")

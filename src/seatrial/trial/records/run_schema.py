@@ -270,6 +270,8 @@ class _Campaign(_Entry):
     cases: list[_Case]
     table: str | None = None
     count: Count | None = None
+    page: str | None = None
+    left_out: dict[str, str] = Field(default_factory=dict)
     map: MapEntry | None = None
 
 

@@ -1,4 +1,4 @@
-"""The templates of this package's pages and drawings; what is put into them is escaped."""
+"""The templates of pages and drawings, here and in kits; what is put into them is escaped."""
 
 from __future__ import annotations
 
@@ -10,9 +10,13 @@ from jinja2 import Environment, FileSystemBytecodeCache, FileSystemLoader, Stric
 from jinja2.bccache import Bucket
 
 from ...fmi.cache import cache_folder
+from ...kits import kits
 from ...model.readable import number
 from ...whole_file import write_whole
 from .packed import packed
+
+FOLDER = "templates"
+"""Beside this module, and beside the manifest of a kit whose pages have templates of their own."""
 
 
 class _Compiled(FileSystemBytecodeCache):
@@ -23,11 +27,15 @@ class _Compiled(FileSystemBytecodeCache):
             write_whole(Path(self._get_cache_filename(bucket)), bucket.bytecode_to_string())
 
 
+def _of_kits() -> list[Path]:
+    return [kit.folder / FOLDER for kit in kits().found]
+
+
 @cache
 def environment() -> Environment:
     """Return the templates, with their compiled form in the user's cache."""
     found = Environment(
-        loader=FileSystemLoader(Path(__file__).parent / "templates"),
+        loader=FileSystemLoader([Path(__file__).parent / FOLDER, *_of_kits()]),
         autoescape=True,
         undefined=StrictUndefined,
         trim_blocks=True,

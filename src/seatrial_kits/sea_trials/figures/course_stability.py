@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from scipy.interpolate import CubicSpline
 
 from seatrial.errors import InputError
 
@@ -60,16 +62,23 @@ def is_stable(starboard: float, port: float, before: float, share: float = 0.02)
     return abs(starboard - port) <= share * abs(before)
 
 
-def spiral(record: Record, length: float) -> tuple[Array, Array]:
-    """Return helm (m,), rad, and r' = r L / U (m,) at the steps of a direct spiral, in their order.
+def spiral(
+    record: Record, length: float | None, orders: Sequence[float] = ()
+) -> tuple[Array, Array]:
+    """Return helm (m,), rad, and r' = r L / U (m,) at the steps of a spiral, in their order.
 
-    A step is a stretch of unchanged helm of at least eight rows; its rate and speed are means over
-    its last tenth. ``length`` in m. Raises InputError without helm, or with less than three steps.
+    Steps begin at ``orders``, s; without them a step is a stretch of unchanged helm, so that the
+    spiral is a direct one. It has at least eight rows; its helm, rate and speed are means over its
+    last tenth. Without a ``length``, m, the rates are r, rad/s. Raises InputError without helm, or
+    with less than three steps.
     """
     if record.helm is None:
         raise InputError("spiral: the record has no helm")
-    same = np.abs(np.diff(record.helm)) <= 1e-6 * np.abs(record.helm).max()
-    edges = np.flatnonzero(~same) + 1
+    if orders:
+        edges = np.searchsorted(record.time, np.asarray(orders))
+    else:
+        same = np.abs(np.diff(record.helm)) <= 1e-6 * np.abs(record.helm).max()
+        edges = np.flatnonzero(~same) + 1
     starts = np.concatenate(([0], edges))
     ends = np.concatenate((edges - 1, [len(record.helm) - 1]))
     helms, rates = [], []
@@ -78,12 +87,47 @@ def spiral(record: Record, length: float) -> tuple[Array, Array]:
             continue
         at = float(record.time[first]), float(record.time[last])
         settled = at[1] - _SETTLED * (at[1] - at[0])
-        speed = record.track(settled, at[1]) / (at[1] - settled)
-        helms.append(float(record.helm[last]))
-        rates.append(steady_rate(record, *at) * length / speed)
+        scale = 1.0
+        if length is not None:
+            scale = length * (at[1] - settled) / record.track(settled, at[1])
+        rows = slice(int(np.searchsorted(record.time, settled)), last + 1)
+        helms.append(float(record.helm[rows].mean()))
+        rates.append(steady_rate(record, *at) * scale)
     if len(helms) < 3:
         raise InputError(f"spiral: at least three steps of helm are needed, found {len(helms)}")
     return np.array(helms), np.array(rates)
+
+
+@dataclass(frozen=True)
+class Stability:
+    """The curve of helm against rate of a reverse spiral, which is single-valued."""
+
+    neutral_helm: float
+    """Helm at which the rate is 0, rad."""
+    slope: float
+    """Helm by rate there, rad in the unit of the rate; below 0 for a vessel that is not stable on a
+    straight course."""
+    width: float
+    """Range of helm in which three rates are steady, rad: 0 for a stable vessel."""
+
+
+def stability(helm: Any, rate: Any) -> Stability:
+    """Return what a reverse spiral tells of helm (n,), rad, and rate (n,), in any order.
+
+    The curve is the cubic spline through its points; the width is that between its extrema on the
+    branch that is not stable. Raises InputError for less than four rates, or rates that do not
+    enclose 0.
+    """
+    order = np.argsort(rate)
+    helm, rate = np.asarray(helm, np.float64)[order], np.asarray(rate, np.float64)[order]
+    if len(rate) < 4 or not rate[0] < 0.0 < rate[-1] or not (np.diff(rate) > 0.0).all():
+        raise InputError("reverse spiral: four different rates, to both sides, are needed")
+    curve = CubicSpline(rate, helm)
+    at = np.linspace(rate[0], rate[-1], 2001)
+    falling = np.diff(curve(at)) < 0.0
+    inside = curve(at)[:-1][falling]
+    width = float(inside.max() - inside.min()) if falling.any() else 0.0
+    return Stability(float(curve(0.0)), float(curve(0.0, 1)), width)
 
 
 def loop(helm: Any, rate: Any) -> Loop:

@@ -10,6 +10,8 @@ from seatrial.errors import InputError
 
 from .result import Figures
 
+SHIP = 100.0
+"""Length from which on the criteria are for all ships, m."""
 _FASTEST, _SLOWEST = 10.0, 30.0
 """L/V in s between which the limits of the overshoots rise."""
 

@@ -28,7 +28,8 @@ class Record:
     the reference point, midship by the convention of the IMO, over ground; ``heading`` is
     clockwise from north, wrapped or not, and unwrapped here. ``helm`` is positive to turn to
     starboard: an angle, or the share of full helm from -1 to 1. ``roll`` is positive to starboard,
-    ``depth`` down, ``pitch`` bow up; ``power`` in W. What was not measured is None.
+    ``depth`` down, ``pitch`` bow up; ``power`` in W, ``pull`` of a line in N. What was not measured
+    is None.
 
     Between rows, values are those of the cubic spline through all of them (not-a-knot).
 
@@ -46,6 +47,7 @@ class Record:
     depth: Any = None
     pitch: Any = None
     power: Any = None
+    pull: Any = None
 
     def __post_init__(self) -> None:
         columns = {name: np.asarray(values, np.float64) for name, values in self.columns().items()}

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -133,6 +134,64 @@ def speed_power(speeds: Array, powers: Array) -> tuple[float, float]:
         raise InputError("speed-power curve: speeds and powers above 0 are needed")
     exponent, factor = np.polyfit(np.log(speeds), np.log(powers), 1)
     return float(math.exp(factor)), float(exponent)
+
+
+def speed_trial(record: Record, runs: Sequence[tuple[float, float]]) -> Figures:
+    """Return speed through the water, m/s, and power, W, of double runs, numbered from 1.
+
+    ``runs`` has begin and end of each, s: with a power there and back on the reciprocal course,
+    then with the next. A run's speed is the mean along its heading over ground, `mean_of_means`
+    that of a double run; the current along the course leaves no error. P = c U^n has the
+    exponent ``speed_power_exponent`` n and c = ``power_at_unit_speed``.
+
+    Raises InputError for an odd number of runs, or times outside the record.
+    """
+    if not runs or len(runs) % 2:
+        raise InputError(f"speed trial: runs by twos are needed, found {len(runs)}")
+    found, speeds, powers = Collector("speed trial"), [], []
+    for number, first in enumerate(range(0, len(runs), 2), 1):
+        pair = [run_speed(record, *run) for run in runs[first : first + 2]]
+        ahead = [_along(record, *run) for run in runs[first : first + 2]]
+        speeds.append(mean_of_means(ahead))
+        found.add("m/s", **{f"speed_{number}": speeds[-1]})
+        if all("power" in each for each in pair):
+            powers.append(sum(each["power"] for each in pair) / 2.0)
+            found.add("W", **{f"power_{number}": powers[-1]})
+    names = "power_at_unit_speed", "speed_power_exponent"
+    if not powers:
+        found.lack("the record has no power", "power", *names)
+        return found.figures()
+    try:
+        factor, exponent = speed_power(np.array(speeds), np.array(powers))
+    except InputError as error:
+        found.lack(str(error), *names)
+    else:
+        found.add("1", speed_power_exponent=exponent)
+        found.add("W", power_at_unit_speed=factor)
+    return found.figures()
+
+
+def bollard_pull(record: Record, order: float) -> Figures:
+    """Return the pull on a line at rest, N: mean over the last half of the time from the order, s.
+
+    ``largest_pull`` is that of the first surge into the line, ``power`` the mean, W. Class
+    societies take the mean over some minutes, too. Raises InputError without a record of the pull.
+    """
+    pull, found = record.spline("pull"), Collector("bollard pull")
+    first = (order + record.end) / 2.0
+    mean = float(pull.integrate(first, record.end)) / (record.end - first)
+    found.add("N", bollard_pull=mean, largest_pull=float(record.pull[record.time >= order].max()))
+    if record.power is None:
+        found.lack("the record has no power", "power")
+    else:
+        power = record.spline("power").integrate(first, record.end) / (record.end - first)
+        found.add("W", power=float(power))
+    return found.figures()
+
+
+def _along(record: Record, first: float, last: float) -> float:
+    """Return the mean speed over ground along the heading, m/s."""
+    return float(speed_ahead(record).integrate(first, last)) / (last - first)
 
 
 def _moving(record: Record, order: float) -> float:
