@@ -83,7 +83,7 @@ def read_log(path: Path, columns: Mapping[str, Column]) -> Record:
             f"needed, found {', '.join(named) or 'none'}; name them with --columns"
         )
     values = {
-        what: _column(path, (lines, rows), header.index(column.name), column, units, what)
+        what: _column(path, (lines, rows), header.index(column.name), column, units, UNITS[what])
         for what, column in named.items()
     }
     if "latitude" in values:
@@ -92,6 +92,14 @@ def read_log(path: Path, columns: Mapping[str, Column]) -> Record:
         return Record(**values)
     except InputError as error:
         raise InputError(f"{path}: {error}") from None
+
+
+def read_series(path: Path, what: str, column: Column, unit: str) -> Array:
+    """Return one more column of a CSV file, in ``unit``; raises InputError as `read_log`."""
+    header, units, lines, rows = _cells(path)
+    if column.name not in header:
+        raise InputError(f"{path}, line 1: {what}: {unknown('column', column.name, header)}")
+    return _column(path, (lines, rows), header.index(column.name), column, units, unit)
 
 
 def _local(latitude: Array, longitude: Array) -> dict[str, Array]:
@@ -138,14 +146,14 @@ def _column(
     place: int,
     column: Column,
     units: Mapping[str, str],
-    what: str,
+    unit: str,
 ) -> Array:
     where = f"{path}: column {column.name!r}"
     written = units.get(column.name)
     if column.unit and written and column.unit != written:
         raise InputError(f"{where}: the file has it in {written}, not {column.unit}")
     try:
-        factor, offset = conversion(column.unit or written or UNITS[what], UNITS[what])
+        factor, offset = conversion(column.unit or written or unit, unit)
     except InputError as error:
         raise InputError(f"{where}: {error}") from None
     values = []
