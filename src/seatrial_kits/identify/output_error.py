@@ -248,7 +248,9 @@ def covariances(
     scale = np.sqrt((jacobian**2).sum(axis=0))
     scale[scale == 0.0] = 1.0
     U, singular, V = np.linalg.svd(jacobian / scale, full_matrices=False)
-    inverse = V.T / np.maximum(singular, np.finfo(float).eps * singular.max(initial=1.0)) / scale[:, None]
+    inverse = (
+        V.T / np.maximum(singular, np.finfo(float).eps * singular.max(initial=1.0)) / scale[:, None]
+    )
     middle = np.zeros((k, k))
     edges = np.cumsum([0, *(stretches or [count])])
     for first, last in pairwise(edges):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -13,6 +14,7 @@ from seatrial.fmi.direct import DirectInstance
 from seatrial.model.expressions import Model, Vector
 from seatrial.model.plant import Plant
 from seatrial.model.ports import Parameter
+from seatrial.system.parameters import load_vehicle
 from seatrial.system.part import Part
 from seatrial.system.system import System
 
@@ -49,6 +51,8 @@ class Craft:
     """Inputs that the vehicle's rig feeds, by scalar name."""
     source: tuple[Path, str]
     """The vehicle's file, and the table in it."""
+    variant: str | None
+    """Variant of the vehicle's file that the numbers are of."""
 
     @property
     def model(self) -> Model:
@@ -59,6 +63,11 @@ class Craft:
         """Return which state a name of `MOTION` is, None for one that the craft does not have."""
         names = self.model.x_names
         return next((names.index(each) for each in MOTION[motion] if each in names), None)
+
+    def places(self, motions: Sequence[str]) -> list[int]:
+        """Return which states are names of `MOTION` that every craft has."""
+        found = [self.place(motion) for motion in motions]
+        return [place for place in found if place is not None]
 
     def free(self, named: list[str]) -> tuple[str, ...]:
         """Return the parameters to be identified: those named, else the kind's `CANDIDATES`.
@@ -95,9 +104,10 @@ class Craft:
 
     def limits(self, name: str) -> tuple[float, float]:
         """Return the least and the greatest value that a parameter may have."""
-        port = self.plant.scalar_by_name[name].port
-        assert isinstance(port, Parameter)
-        low, high = port.min, port.max
+        scalar = self.plant.scalar_by_name[name]
+        assert isinstance(scalar.port, Parameter)
+        limits = (scalar.port.min, scalar.port.max)
+        low, high = (each[scalar.index] if isinstance(each, tuple) else each for each in limits)
         return -math.inf if low is None else low, math.inf if high is None else high
 
     def _acting(self) -> set[str]:
@@ -109,7 +119,7 @@ class Craft:
     def _scalars(self, name: str) -> tuple[str, ...]:
         ports = {port.name: port for port in self.plant.parameter_ports}
         if name in ports:
-            return ports[name].scalar_names
+            return tuple(ports[name].scalar_names)
         if name not in self.parameters:
             raise InputError(f"--free: {unknown('parameter', name, [*ports, *self.parameters])}")
         return (name,)
@@ -140,7 +150,15 @@ def craft_in(system: System) -> Craft:
         np.array([plant.get(name) for name in plant.compiled().x_names]),
         tuple(name for name in plant.compiled().u_names if name in fed),
         part.vehicle,
+        _variant(system, part.name, part.vehicle[0]),
     )
+
+
+def _variant(system: System, name: str, path: Path) -> str | None:
+    file = load_vehicle(str(path)).file
+    if system.variant in file.variants:
+        return system.variant
+    return system.rig.components[name].scope.variant or file.default
 
 
 def _is_craft(part: Part) -> bool:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -17,6 +18,9 @@ from seatrial_kits.sea_trials.run_record import COMPONENT, done_in
 
 HELM, SPEED = "helm", "speed"
 """Orders to the pilot: angle, rad, positive to turn to starboard; share of full speed."""
+QUANTITIES = tuple(UNITS)
+"""What a log may have beside the orders."""
+_FULL_HELM = math.radians(35.0)
 
 
 @dataclass(frozen=True)
@@ -58,11 +62,13 @@ def read_pass(path: Path, columns: Sequence[str], unit: Callable[[str], str]) ->
     for text in others:
         what, equals, written = text.partition("=")
         if not (equals and written):
-            raise InputError(f"--columns: WHAT=NAME[:UNIT] or WHAT=NUMBER is needed, found {text!r}")
+            raise InputError(
+                f"--columns: WHAT=NAME[:UNIT] or WHAT=NUMBER is needed, found {text!r}"
+            )
         orders[what] = _order(path, what, written, unit(what), len(record.time))
     if record.helm is not None and not any(name != SPEED for name in orders):
         orders[HELM] = record.helm
-    return Pass(path, record, orders, np.radians(35.0))
+    return Pass(path, record, orders, _FULL_HELM)
 
 
 def _order(path: Path, what: str, written: str, unit: str, rows: int) -> Vector:

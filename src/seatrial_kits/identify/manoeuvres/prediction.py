@@ -47,6 +47,11 @@ class Motion:
     start: Vector
     """State at the first row, a guess where it is among `STARTS`."""
 
+    @property
+    def measured(self) -> Vector:
+        """The readings (3, n) of the record."""
+        return np.array([getattr(self.record, name) for name in READINGS])
+
 
 class Predictor:
     """Readings (3, n) of a pass, and their derivatives by the unknowns.
@@ -60,14 +65,14 @@ class Predictor:
     def __init__(self, craft: Craft, motion: Motion, free: Sequence[str], speed: float) -> None:
         self.motion, self._speed, self._count = motion, speed, len(free)
         model, names = craft.model, list(craft.parameters)
-        self._starts = [craft.place(name) for name in STARTS]
+        self._starts = craft.places(STARTS)
         theta = ca.SX.sym("theta", len(free))
         starts = ca.SX.sym("start", len(STARTS))
         p = ca.SX(ca.DM(list(craft.parameters.values())))
         for place, name in enumerate(free):
             p[names.index(name)] *= 1 + theta[place]
         self._moved = _moved(model.rhs, self._starts, [names.index(name) for name in free])
-        places = [craft.place(name) for name in READINGS]
+        places = craft.places(READINGS)
         unknowns = ca.vertcat(theta, starts)
         step = sensitive_period(
             model, unknowns, p, lambda x, _: x[places], substeps=1, moved=self._moved
@@ -83,13 +88,13 @@ class Predictor:
         x = self.motion.start.copy()
         x[self._starts] = starts
         slopes = np.zeros((len(self._moved), k))
-        for place, state in enumerate(self._starts):
-            slopes[self._moved.index(state), self._count + place] = 1.0
+        rows = [self._moved.index(state) for state in self._starts]
+        slopes[rows, range(self._count, k)] = 1.0
         given = np.tile(np.concatenate((theta, starts, [0.0]))[:, None], len(self.motion.steps))
         given[-1] = self.motion.steps
-        state = np.concatenate((x, slopes.ravel(order="F")))
-        _, rows = self._run(state, self.motion.inputs, given)
-        columns = np.asarray(rows)[:, self.motion.rows].reshape(1 + k, len(READINGS), -1)
+        first = np.concatenate((x, slopes.ravel(order="F")))
+        _, found = self._run(first, self.motion.inputs, given)
+        columns = np.asarray(found)[:, self.motion.rows].reshape(1 + k, len(READINGS), -1)
         readings, by_own = columns[0].copy(), columns[1:].transpose(1, 2, 0)
         readings[:2] += self._speed * current[:, None] * self.elapsed
         by_current = np.zeros((len(READINGS), len(self.elapsed), 2))
@@ -140,7 +145,7 @@ def _track(craft: Craft, motion: Motion) -> Vector:
     run = craft.model.rk4.mapaccum(len(motion.steps), {"base": 8})
     p = np.tile(np.array(list(craft.parameters.values()))[:, None], len(motion.steps))
     states = np.asarray(run(motion.start, motion.inputs, p, motion.steps[None, :]))
-    places = [craft.place(name) for name in READINGS[:2]]
+    places = craft.places(READINGS[:2])
     return np.column_stack((motion.start[:, None], states[:, :-1]))[places][:, motion.rows]
 
 
@@ -148,8 +153,7 @@ def _first_state(craft: Craft, record: Record, inputs: Vector) -> Vector:
     p, step = np.array(list(craft.parameters.values())), float(craft.plant.max_step)
     x = craft.start.copy()
     first = _guess(record)
-    for name in ("u", "v", "r"):
-        x[craft.place(name)] = first[name]
+    x[craft.places(("u", "v", "r"))] = first["u"], first["v"], first["r"]
     for _ in range(round(_SETTLING / step)):
         x = np.asarray(craft.model.rk4(x, inputs, p, step)).ravel()
     if not np.isfinite(x).all():
@@ -169,18 +173,21 @@ def _guess(record: Record) -> dict[str, float]:
         elapsed, np.column_stack((record.north, record.east, record.heading))[:last], 1
     )
     found = {"north": float(record.north[0]), "east": float(record.east[0]), "heading": float(psi)}
-    found |= {"u": v_n * np.cos(psi) + v_e * np.sin(psi), "v": v_e * np.cos(psi) - v_n * np.sin(psi)}
+    found |= {
+        "u": v_n * np.cos(psi) + v_e * np.sin(psi),
+        "v": v_e * np.cos(psi) - v_n * np.sin(psi),
+    }
     found["r"] = float(r)
     measured = {"depth": record.depth, "roll": record.roll, "pitch": record.pitch}
     return found | {name: float(each[0]) for name, each in measured.items() if each is not None}
 
 
-def _moved(rhs: ca.Function, starts: Sequence[int | None], free: Sequence[int]) -> list[int]:
+def _moved(rhs: ca.Function, starts: Sequence[int], free: Sequence[int]) -> list[int]:
     """Return the states that depend on the unknowns, by the equations' structure."""
     by_state = np.array(ca.DM(rhs.jac_sparsity(0, 0), 1)).astype(bool)
     by_parameter = np.array(ca.DM(rhs.jac_sparsity(0, 2), 1)).astype(bool)
-    moved = by_parameter[:, list(free)].any(axis=1)
-    moved[[place for place in starts if place is not None]] = True
+    moved = np.asarray(by_parameter[:, list(free)].any(axis=1))
+    moved[list(starts)] = True
     while True:
         more = moved | by_state[:, moved].any(axis=1)
         if (more == moved).all():

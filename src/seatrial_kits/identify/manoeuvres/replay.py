@@ -90,6 +90,7 @@ def _replayed(craft: Craft, vehicle: str, variant: str | None, run: Pass) -> Vec
     yaw = np.clip(run.orders[HELM] / run.full_helm, -1.0, 1.0)
     surge = np.clip(run.orders[SPEED], -1.0, 1.0)
     rows = [(0.0, surge[0], yaw[0]), *zip(time, surge, yaw, strict=True)]
+    rows.append((float(time[-1]) + 2.0 * STEP, surge[-1], yaw[-1]))
     at, reached = [], []
     with _started(vehicle, variant, rows) as (_, master):
         for _ in range(int(np.ceil(time[-1] / STEP - 1e-9)) + 1):
