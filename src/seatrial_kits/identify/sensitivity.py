@@ -17,11 +17,13 @@ def sensitive_period(
     read: Callable[[Any, Any], Any],
     substeps: int,
     moved: Sequence[int] | None = None,
+    known: Any = None,
 ) -> ca.Function:
-    """Return one period: (state with sensitivities, input, unknowns and period) to the next.
+    """Return one period: (state with sensitivities, input, q and period) to the next.
 
     ``unknowns`` q (k,) are the symbols that the stacked parameters ``p`` and ``read`` are made
-    of; ``read(x, u)`` gives the readings (m,) at the beginning of the period. The state is x (n,)
+    of, with those that are ``known``, which then stand between q and the period. ``read(x, u)``
+    gives the readings (m,) at the beginning of the period. The state is x (n,)
     with dx/dq (n, k) stacked column by column; the other result is the readings with
     their sensitivities (m, k), likewise. They are the variational equations of the discrete
     step, Runge-Kutta of order 4 in ``substeps`` parts: exact for what is simulated. ``moved`` are
@@ -44,5 +46,5 @@ def sensitive_period(
     state = ca.vertcat(x, ca.vec(own))
     following = ca.vertcat(after, ca.vec(total(after)[places, :]))
     rows = ca.vertcat(readings, ca.vec(total(readings)))
-    given = ca.vertcat(unknowns, period)
+    given = ca.vertcat(unknowns, ca.SX(0, 1) if known is None else known, period)
     return ca.Function("period", [state, u, given], [ca.densify(following), ca.densify(rows)])

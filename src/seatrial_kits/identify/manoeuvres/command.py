@@ -12,7 +12,7 @@ from rich.markup import escape
 from rich.table import Table
 
 from seatrial.cli.answer import answer
-from seatrial.cli.show import console, print_notes
+from seatrial.cli.show import console, print_notes, print_table
 from seatrial.errors import InputError, unknown
 from seatrial.trial.reports.report import REPORT
 from seatrial.trial.running.output import claim_folder
@@ -86,9 +86,9 @@ def _unit(craft: Craft, what: str) -> str:
 
 
 def _print(found: ManoeuvreStudy) -> None:
-    console.print(_table(HEADINGS, table_rows(found)))
-    heads = ("pass", "track before", "identified", "heading before", "identified")
-    console.print(_table(heads, pass_rows(found)))
+    print_table(_table(HEADINGS, table_rows(found)))
+    heads = ("", "track before", "identified", "heading before", "identified")
+    print_table(_table(heads, pass_rows(found)))
     print_notes(found.notes)
     for verdict in found.verdicts:
         style, word = ("green", "PASS") if verdict.passed else ("red", "FAIL")
@@ -100,7 +100,7 @@ def _print(found: ManoeuvreStudy) -> None:
 def _table(headings: tuple[str, ...], rows: list[tuple[str, ...]]) -> Table:
     table = Table(box=SIMPLE, padding=(0, 1, 0, 0))
     for place, heading in enumerate(headings):
-        table.add_column(heading, justify="left" if place == 0 else "right")
+        table.add_column(heading, justify="left" if place == 0 else "right", no_wrap=True)
     for row in rows:
         table.add_row(*map(escape, row))
     return table

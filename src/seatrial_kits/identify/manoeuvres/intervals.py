@@ -28,14 +28,15 @@ def deviations(
 ) -> Vector:
     """Return the standard deviations of the unknowns ``told`` (places of columns).
 
-    C + G P G^T: C is the covariance with the others known (`covariances`), G = -(J^T J)^-1 J^T
+    C + G P G^T: C is the covariance with the others known, the larger one of that of a white
+    residual and of that with its autocorrelation, which so few waves underrate, G = -(J^T J)^-1 J^T
     J_kept is what an error of the kept ones does to them, P their variance, `FILE` squared: a
     consider covariance (Bierman, Factorization Methods for Discrete Sequential Estimation, 1977).
     """
     J = jacobian[:, told]
-    _, covariance = covariances(J, residual, stretches)
+    variances = np.maximum(*(np.diag(each) for each in covariances(J, residual, stretches)))
     carried = np.linalg.lstsq(J, jacobian[:, kept], rcond=None)[0]
-    found: Vector = np.sqrt(np.diag(covariance + FILE**2 * carried @ carried.T))
+    found: Vector = np.sqrt(variances + FILE**2 * (carried**2).sum(axis=1))
     return found
 
 
@@ -53,19 +54,17 @@ def bootstrap(
     count, k = jacobian.shape
     edges = list(pairwise(np.cumsum([0, *stretches])))
     centred = np.concatenate([residual[a:b] - residual[a:b].mean() for a, b in edges])
-    drawn = np.array([_redrawn(centred, edges, random) for _ in range(_RESAMPLES)])
+    drawn = np.concatenate([_redrawn(centred[a:b], random) for a, b in edges], axis=1)
     spread = math.sqrt(count / max(count - k, 1))
     found: Vector = spread * (drawn @ influence.T).std(axis=0, ddof=1)
     return found
 
 
-def _redrawn(
-    residual: Vector, edges: Sequence[tuple[int, int]], random: np.random.Generator
-) -> Vector:
-    parts = []
-    for first, last in edges:
-        rows = last - first
-        block = max(math.isqrt(rows), 1)
-        starts = random.integers(first, last - block + 1, size=-(-rows // block))
-        parts.append(residual[(starts[:, None] + np.arange(block)).ravel()[:rows]])
-    return np.concatenate(parts)
+def _redrawn(residual: Vector, random: np.random.Generator) -> Vector:
+    """Return resamples (m, n) of a stretch (n,), of blocks of it."""
+    rows = len(residual)
+    block = max(math.isqrt(rows), 1)
+    starts = random.integers(rows - block + 1, size=(_RESAMPLES, -(-rows // block)))
+    places = (starts[..., None] + np.arange(block)).reshape(_RESAMPLES, -1)
+    found: Vector = residual[places[:, :rows]]
+    return found

@@ -10,10 +10,10 @@ from seatrial.trial.reports.plots import Line, Panel, time_figure, track_figure
 from seatrial.trial.reports.report import REPORT, render
 from seatrial.whole_file import write_whole
 
+from .intervals import WITHIN
 from .study import ManoeuvreStudy, Row, Shown
 
-HEADINGS = ("parameter", "unit", "in the file", "identified", "95 % interval", "by bootstrap",
-            "told apart")  # fmt: skip
+HEADINGS = ("", "in the file", "identified", "+-", "by bootstrap", "unit", "told apart")
 _DEGREES = math.degrees(1.0)
 
 
@@ -25,13 +25,10 @@ def table_rows(study: ManoeuvreStudy) -> list[tuple[str, ...]]:
 def _texts(row: Row) -> tuple[str, ...]:
     before = "" if row.is_current else number(row.before, 4)
     if not row.told:
-        why = f"no, from {row.partner}" if row.partner else "no"
-        return (row.name, row.unit, before, "kept", "", "", why)
-    low, high = row.interval
-    told = f"hardly, from {row.partner}" if row.partner else "yes"
-    half = f"+- {number(1.96 * row.resampled, 2)}"
-    return (row.name, row.unit, before, number(row.value, 4),
-            f"{number(low, 4)} to {number(high, 4)}", half, told)  # fmt: skip
+        return (row.name, before, "kept", "", "", row.unit, "no")
+    halves = (number(WITHIN * each, 2) for each in (row.deviation, row.resampled))
+    told = "hardly" if row.partner else "yes"
+    return (row.name, before, number(row.value, 4), *halves, row.unit, told)
 
 
 def pass_rows(study: ManoeuvreStudy) -> list[tuple[str, ...]]:

@@ -35,6 +35,8 @@ class Pass:
     orders: Mapping[str, Vector]
     full_helm: float
     """Helm of full deflection, rad."""
+    is_held: bool = False
+    """Whether orders hold until the next row, as those of a run do; else linear between."""
 
     @property
     def name(self) -> str:
@@ -90,7 +92,7 @@ def _of_run(path: Path) -> Pass:
     columns = {key: values[first:] for key, values in done.record.columns().items()}
     record = Record(**columns)
     speed = np.asarray(run.signals[signal], np.float64)[first:]
-    return Pass(path, record, {HELM: record.helm, SPEED: speed}, done.full_helm)
+    return Pass(path, record, {HELM: record.helm, SPEED: speed}, done.full_helm, is_held=True)
 
 
 def thinned(record: Record, most: int) -> Record:

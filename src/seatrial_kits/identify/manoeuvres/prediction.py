@@ -9,12 +9,14 @@ import casadi as ca
 import numpy as np
 
 from seatrial.errors import InputError
+from seatrial.fmi.compiled_functions import compiled_function
 from seatrial.model.expressions import Vector
 from seatrial_kits.sea_trials.figures.record import Record
 
 from ..sensitivity import sensitive_period
 from .craft import Craft
 from .passes import thinned
+from .replay import Inputs
 
 READINGS = ("north", "east", "heading")
 """Columns of a record that are predicted."""
@@ -26,8 +28,10 @@ MOST_ROWS = 1200
 _SETTLING = 30.0
 """How long the first inputs act on the craft before the first row, s."""
 _GUESSED = 20.0
-"""Time over which the first velocity is guessed, s."""
+"""Longest time over which the first velocity is guessed, s; at most a tenth of the record is."""
 _LEAST = 8
+_WORTH = 10_000
+"""Steps of the integration from which a compiler saves more time than it takes."""
 _LONGEST, _ACCURACY = 2.0, 1e-5
 """Longest step of the integration, s, and the share of the span that a longer step may change."""
 
@@ -68,15 +72,17 @@ class Predictor:
         self._starts = craft.places(STARTS)
         theta = ca.SX.sym("theta", len(free))
         starts = ca.SX.sym("start", len(STARTS))
-        p = ca.SX(ca.DM(list(craft.parameters.values())))
+        known = ca.SX.sym("known", len(names))
+        p = ca.SX(known)
         for place, name in enumerate(free):
             p[names.index(name)] *= 1 + theta[place]
         self._moved = _moved(model.rhs, self._starts, [names.index(name) for name in free])
         places = craft.places(READINGS)
         unknowns = ca.vertcat(theta, starts)
-        step = sensitive_period(
-            model, unknowns, p, lambda x, _: x[places], substeps=1, moved=self._moved
-        )
+        step = sensitive_period(model, unknowns, p, lambda x, _: x[places], 1, self._moved, known)
+        if len(motion.steps) > _WORTH:
+            step = compiled_function(step)
+        self._known = np.array(list(craft.parameters.values()))
         self._run = step.mapaccum(len(motion.steps), {"base": 8})
         self.elapsed = motion.record.time - motion.record.start
 
@@ -90,7 +96,8 @@ class Predictor:
         slopes = np.zeros((len(self._moved), k))
         rows = [self._moved.index(state) for state in self._starts]
         slopes[rows, range(self._count, k)] = 1.0
-        given = np.tile(np.concatenate((theta, starts, [0.0]))[:, None], len(self.motion.steps))
+        same = np.concatenate((theta, starts, self._known, [0.0]))
+        given = np.tile(same[:, None], len(self.motion.steps))
         given[-1] = self.motion.steps
         first = np.concatenate((x, slopes.ravel(order="F")))
         _, found = self._run(first, self.motion.inputs, given)
@@ -103,7 +110,7 @@ class Predictor:
         return readings, np.concatenate(parts, axis=2)
 
 
-def motion_of(craft: Craft, record: Record, inputs: Vector) -> Motion:
+def motion_of(craft: Craft, record: Record, inputs: Inputs) -> Motion:
     """Return a pass on the grid that the equations need.
 
     The step is the longest up to 2 s whose track differs from that of half the step by no more
@@ -111,15 +118,15 @@ def motion_of(craft: Craft, record: Record, inputs: Vector) -> Motion:
     unknown nor measured are those after 30 s of the first inputs. Raises InputError if the
     equations do not follow the inputs.
     """
-    start = _first_state(craft, record, inputs[0])
+    start = _first_state(craft, record, inputs.values[0])
     shown = thinned(record, MOST_ROWS)
     usual = float(np.median(np.diff(shown.time)))
     step = min(_LONGEST, usual)
     fine = float(craft.plant.max_step)
-    tried = _on_grid(record, shown, inputs, start, step)
+    tried = _on_grid(shown, inputs, start, step)
     track = _track(craft, tried)
     while step > fine:
-        half = _on_grid(record, shown, inputs, start, step / 2.0)
+        half = _on_grid(shown, inputs, start, step / 2.0)
         finer = _track(craft, half)
         apart = np.abs(track - finer).max() if np.isfinite(track).all() else np.inf
         if apart <= _ACCURACY * max(float(np.ptp(finer)), 1e-9):
@@ -130,13 +137,13 @@ def motion_of(craft: Craft, record: Record, inputs: Vector) -> Motion:
     return tried
 
 
-def _on_grid(record: Record, shown: Record, inputs: Vector, start: Vector, step: float) -> Motion:
+def _on_grid(shown: Record, inputs: Inputs, start: Vector, step: float) -> Motion:
     lengths = np.diff(shown.time)
     counts = np.maximum(np.ceil(lengths / step - 1e-9), 1.0).astype(int)
     steps = np.append(np.repeat(lengths / counts, counts), step)
     begins = shown.start + np.concatenate(([0.0], np.cumsum(steps[:-1])))
     middles = begins + steps / 2.0
-    given = np.array([np.interp(middles, record.time, column) for column in inputs.T])
+    given = np.array([np.interp(middles, inputs.time, column) for column in inputs.values.T])
     return Motion(shown, np.concatenate(([0], np.cumsum(counts))), steps, given, start)
 
 
@@ -167,11 +174,11 @@ def _first_state(craft: Craft, record: Record, inputs: Vector) -> Vector:
 
 def _guess(record: Record) -> dict[str, float]:
     """Return what the first rows show: position, angles and velocity."""
-    last = max(int(np.searchsorted(record.time, record.start + _GUESSED)), _LEAST)
+    length = min(_GUESSED, 0.1 * (record.end - record.start))
+    last = max(int(np.searchsorted(record.time, record.start + length)), _LEAST)
     elapsed = record.time[:last] - record.start
-    (v_n, v_e, r), (_, _, psi) = np.polyfit(
-        elapsed, np.column_stack((record.north, record.east, record.heading))[:last], 1
-    )
+    columns = np.column_stack((record.north, record.east, record.heading))
+    _, (v_n, v_e, r), (_, _, psi) = np.polyfit(elapsed, columns[:last], 2)
     found = {"north": float(record.north[0]), "east": float(record.east[0]), "heading": float(psi)}
     found |= {
         "u": v_n * np.cos(psi) + v_e * np.sin(psi),

@@ -75,20 +75,29 @@ class Problem:
     ) -> Solution:
         """Return the least sum over the unknowns ``looked_for`` and all states.
 
-        The others keep what ``start`` has. ``scales`` are those of the first round, None: a
+        The others keep what ``start`` has; the states start from there, or from `guess` if that is
+        nearer to the logs. ``scales`` are those of the first round, None: a
         hundredth of what each reading covers. ``prior`` is the standard deviation that relative
         changes are held to, None: nothing holds them. Raises InputError if the equations do not
         follow the orders.
         """
         places = [i for i, name in enumerate(self.named) if name in looked_for]
         places += range(len(self.named), len(start))
-        unknowns, scales = start.copy(), self._first_scales() if scales is None else scales
+        scales = self._first_scales() if scales is None else scales
+        unknowns = self._nearer(start, scales)
         for _ in range(_ROUNDS):
             unknowns = self._round(unknowns, places, scales, prior)
             residual, jacobian = self._weighted(unknowns, scales)
             used, scales = scales, self._scales(residual, scales)
         ratio = np.repeat((used / scales).ravel(), self.stretches)
         return Solution(unknowns, scales, residual * ratio, jacobian * ratio[:, None])
+
+    def _nearer(self, start: Vector, scales: Vector) -> Vector:
+        """Return a copy of ``start``, with guessed states if these are nearer to the logs."""
+        other = np.concatenate((start[: len(self.named)], self.guess()[len(self.named) :]))
+        sums = [np.nan_to_num((self._weighted(each, scales)[0] ** 2).sum(), nan=np.inf)
+                for each in (start, other)]  # fmt: skip
+        return (start if sums[0] <= sums[1] else other).copy()
 
     def _round(
         self, start: Vector, places: list[int], scales: Vector, prior: float | None

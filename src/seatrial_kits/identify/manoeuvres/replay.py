@@ -6,12 +6,14 @@ import csv
 import json
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
 import numpy as np
 
 from seatrial.errors import InputError, SimulationError, unknown
+from seatrial.model.component import NS
 from seatrial.model.expressions import Vector
 from seatrial.sim.master import Master
 from seatrial.system.assembly import assemble
@@ -21,13 +23,13 @@ from seatrial.system.system import System
 from .craft import Craft, craft_in
 from .passes import HELM, SPEED, Pass
 
-STEP = 0.1
-"""Communication step of the replay, s."""
+_SAMPLED = 0.05
+"""Time between two samples of what reaches the craft, s; a step of the rig if that is longer."""
 _SETTLING = 20.0
 """How long the first orders act before the record begins, s."""
 _RIG = """\
 title = "Replay of recorded orders"
-step  = "100 ms"
+step  = {step}
 [components]
 vehicle = {{ rig = {vehicle} }}
 {pilot}
@@ -41,18 +43,26 @@ _PILOT = (
 )
 
 
+@dataclass(frozen=True)
+class Inputs:
+    """Inputs of a craft over time: ``time`` (n,), s, and ``values`` (n, m), linear between."""
+
+    time: Vector
+    values: Vector
+
+
 def craft_of(vehicle: str, variant: str | None) -> Craft:
     """Return the craft of a vehicle. Raises InputError for what is wrong in its files."""
     with _started(vehicle, variant, None) as (system, _):
         return craft_in(system)
 
 
-def inputs_of(craft: Craft, vehicle: str, variant: str | None, run: Pass) -> Vector:
-    """Return the inputs (n, m) of the craft at the rows of a pass, as its equations take them.
+def inputs_of(craft: Craft, vehicle: str, variant: str | None, run: Pass) -> Inputs:
+    """Return the inputs of the craft during a pass, as its equations take them.
 
     Orders that are inputs of the craft act directly. Helm and speed go to the vehicle's pilot in
-    its mode ``manual``: yaw is helm / full_helm, surge the speed order, held to -1 to 1, linear
-    between rows; what pilot and actuators make of them reaches the craft, at steps of 0.1 s.
+    its mode ``manual``: yaw is helm / full_helm, surge the speed order, held to -1 to 1; what
+    pilot and actuators make of them reaches the craft, at the steps of the vehicle's rig.
 
     Raises InputError for an order that is neither, and for inputs that nothing gives.
     """
@@ -61,13 +71,11 @@ def inputs_of(craft: Craft, vehicle: str, variant: str | None, run: Pass) -> Vec
         if name not in (HELM, SPEED, *names):
             known = [HELM, SPEED, *craft.fed]
             raise InputError(f"{run.path}: {unknown('order', name, known)}")
-    values = np.zeros((len(run.record.time), len(names)))
+    time, replayed = run.record.time, np.zeros((len(run.record.time), len(craft.fed)))
     direct = [name for name in run.orders if name in names]
     lacking = [name for name in craft.fed if name not in direct]
     if HELM in run.orders and SPEED in run.orders:
-        values[:, [names.index(name) for name in craft.fed]] = _replayed(
-            craft, vehicle, variant, run
-        )
+        time, replayed = _replayed(craft, vehicle, variant, run)
     elif lacking and not direct:
         lacking_order = SPEED if HELM in run.orders else HELM
         raise InputError(
@@ -79,38 +87,63 @@ def inputs_of(craft: Craft, vehicle: str, variant: str | None, run: Pass) -> Vec
             f"{run.path}: orders to all inputs of {craft.name} are needed, "
             f"{', '.join(lacking)} lack: --columns {lacking[0]}=NAME or {lacking[0]}=NUMBER"
         )
+    values = np.zeros((len(time), len(names)))
+    values[:, [names.index(name) for name in craft.fed]] = replayed
     for name in direct:
-        values[:, names.index(name)] = run.orders[name]
-    return values
+        values[:, names.index(name)] = np.interp(time, run.record.time, run.orders[name])
+    return Inputs(time, values)
 
 
-def _replayed(craft: Craft, vehicle: str, variant: str | None, run: Pass) -> Vector:
-    """Return what reaches the inputs (n, fed) of the craft at the rows."""
+def _replayed(craft: Craft, vehicle: str, variant: str | None, run: Pass) -> tuple[Vector, Vector]:
+    """Return times (n,) and what reaches the inputs (n, fed) of the craft then."""
     time = run.record.time - run.record.start + _SETTLING
     yaw = np.clip(run.orders[HELM] / run.full_helm, -1.0, 1.0)
     surge = np.clip(run.orders[SPEED], -1.0, 1.0)
     rows = [(0.0, surge[0], yaw[0]), *zip(time, surge, yaw, strict=True)]
-    rows.append((float(time[-1]) + 2.0 * STEP, surge[-1], yaw[-1]))
-    at, reached = [], []
-    with _started(vehicle, variant, rows) as (_, master):
-        for _ in range(int(np.ceil(time[-1] / STEP - 1e-9)) + 1):
+    # A step beyond the end is asked for.
+    rows.append((float(time[-1]) + 2.0 * _SAMPLED, surge[-1], yaw[-1]))
+    at: list[float] = []
+    reached: list[list[float]] = []
+    with _started(vehicle, variant, _Orders(rows, run.is_held)) as (system, master):
+        count = max(round(_SAMPLED * NS / system.rig.step_ns), 1)
+        while not at or at[-1] < time[-1]:
             at.append(master.time)
             reached.append(master.values(craft.name, craft.fed))
-            try:
-                master.advance(1)
-            except SimulationError as error:
-                raise InputError(f"{run.path}: the orders cannot be replayed: {error}") from None
-    columns = np.array(reached, np.float64).T
-    return np.column_stack([np.interp(time, at, column) for column in columns])
+            _advance(master, count, run)
+    shown = np.searchsorted(at, _SETTLING)
+    return np.array(at[shown:]) - _SETTLING + run.record.start, np.array(reached[shown:])
+
+
+def _advance(master: Master, steps: int, run: Pass) -> None:
+    try:
+        while steps:
+            steps -= master.advance(steps)
+    except SimulationError as error:
+        raise InputError(f"{run.path}: the orders cannot be replayed: {error}") from None
+
+
+@dataclass(frozen=True)
+class _Orders:
+    """Rows of time, s, surge and yaw, shares, and whether they hold until the next one."""
+
+    rows: list[tuple[float, float, float]]
+    are_held: bool
+
+    def write(self, path: Path) -> None:
+        """Write them as a table of values over time."""
+        kind = " [1 held]" if self.are_held else ""
+        with path.open("w", encoding="utf-8", newline="") as file:
+            csv.writer(file).writerows([("time", f"surge{kind}", f"yaw{kind}"), *self.rows])
 
 
 @contextmanager
 def _started(
-    vehicle: str, variant: str | None, rows: list[tuple[float, float, float]] | None
+    vehicle: str, variant: str | None, orders: _Orders | None
 ) -> Iterator[tuple[System, Master]]:
-    """Start the vehicle, with its pilot where there are orders for it: time, surge and yaw."""
-    pilot, connections = ("", "") if rows is None else _PILOT
+    """Start the vehicle, with its pilot where there are orders for it."""
+    pilot, connections = ("", "") if orders is None else _PILOT
     text = _RIG.format(
+        step=json.dumps(load_rig(f"vehicles/{vehicle}").file.step),
         vehicle=json.dumps(f"vehicles/{vehicle}"),
         pilot=pilot.format(pilot=json.dumps(f"pilots/{vehicle}")),
         connections=connections,
@@ -118,12 +151,11 @@ def _started(
     with TemporaryDirectory() as folder:
         path = Path(folder) / "replay.toml"
         path.write_text(text, encoding="utf-8")
-        if rows is not None:
-            with path.with_name("orders.csv").open("w", encoding="utf-8", newline="") as file:
-                csv.writer(file).writerows([("time", "surge", "yaw"), *rows])
+        if orders is not None:
+            orders.write(path.with_name("orders.csv"))
         system = assemble(load_rig(str(path)), "direct", variant=variant)
         try:
-            if rows is not None:
+            if orders is not None:
                 system.set("pilot.orders.mode", "manual", "replay")
                 system.set("pilot.orders.armed", True, "replay")
             master = Master(system)

@@ -12,7 +12,7 @@ from seatrial.errors import InputError
 from seatrial.model.expressions import Vector
 from seatrial.model.readable import number
 
-from ..assessment import Verdict
+from ..assessment import LEAST_FIT, Verdict, fit
 from .craft import Craft
 from .intervals import WITHIN, bootstrap, deviations
 from .passes import Pass
@@ -23,6 +23,7 @@ from .telling import Told, told_apart
 
 _PRIOR = 0.5
 """Standard deviation of relative changes while it is not yet known which are told."""
+_TURNED = math.radians(10.0)
 
 
 @dataclass(frozen=True)
@@ -67,6 +68,14 @@ class Shown:
         """Return the root mean square distance of the track, m, and of the heading, rad."""
         north, east, heading = self.log - simulated
         return math.sqrt(np.mean(north**2 + east**2)), math.sqrt(np.mean(heading**2))
+
+    @property
+    def fit(self) -> float:
+        """The lesser fit (`assessment.fit`) of track and, where it turns by 10 deg, heading."""
+        track = fit(*((each[:2].T - self.log[:2].mean(axis=1)).ravel()
+                      for each in (self.log, self.after)))  # fmt: skip
+        turns = np.ptp(self.log[2]) > _TURNED
+        return min(track, fit(self.log[2], self.after[2])) if turns else track
 
 
 @dataclass(frozen=True)
@@ -123,17 +132,12 @@ def manoeuvre_study(
     before = problem.solve(currents, start, scales=held.scales)
     rows = _rows(problem, final, told)
     simulated = (problem.readings(each.unknowns) for each in (before, final))
-    return ManoeuvreStudy(
-        vehicle,
-        craft,
-        rows,
-        tuple(_notes(problem, final, told)),
-        tuple(
-            Shown(run, motion.record.time, motion.measured, old, new)
-            for run, motion, old, new in zip(passes, motions, *simulated, strict=True)
-        ),
-        tuple(_verdicts(craft, rows, final, before)),
+    shown = tuple(
+        Shown(run, motion.record.time, motion.measured, old, new)
+        for run, motion, old, new in zip(passes, motions, *simulated, strict=True)
     )
+    notes, verdicts = _notes(problem, final, told), _verdicts(craft, rows, shown)
+    return ManoeuvreStudy(vehicle, craft, rows, tuple(notes), shown, tuple(verdicts))
 
 
 def _rows(problem: Problem, final: Solution, told: Told) -> tuple[Row, ...]:
@@ -197,10 +201,8 @@ def _notes(problem: Problem, final: Solution, told: Told) -> list[str]:
     return found
 
 
-def _verdicts(
-    craft: Craft, rows: Sequence[Row], final: Solution, before: Solution
-) -> list[Verdict]:
-    """Return the rules: values that the craft accepts, and a log that the model is nearer to."""
+def _verdicts(craft: Craft, rows: Sequence[Row], shown: Sequence[Shown]) -> list[Verdict]:
+    """Return the rules: values that the craft accepts, and passes that the model follows."""
     outside = [
         f"{row.name} {number(row.value, 4)}, {number(low, 4)} to {number(high, 4)} is allowed"
         for row in rows
@@ -208,12 +210,13 @@ def _verdicts(
         for low, high in [craft.limits(row.name)]
         if not low <= row.value <= high
     ]
-    ratio = float(np.exp(np.mean(np.log(final.scales / before.scales))))
+    fits = {each.run.name: each.fit for each in shown}
     return [
         Verdict("the values are those of a craft", not outside, "; ".join(outside) or "in range"),
         Verdict(
-            "the model is nearer to the logs than before",
-            ratio < 1.0,
-            f"{number(100.0 * ratio, 3)} % of the residual before",
+            "the model follows the logs",
+            min(fits.values()) > LEAST_FIT,
+            f"{', '.join(f'{name} {100.0 * value:.1f} %' for name, value in fits.items())}, above "
+            f"{100.0 * LEAST_FIT:g} % is needed",
         ),
     ]

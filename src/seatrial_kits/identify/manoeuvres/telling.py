@@ -51,36 +51,56 @@ def told_apart(
     correlated with. Of those told, pairs with a correlation above `ALIKE` are named, too.
     """
     told, kept, pairs = list(range(len(names))), {}, []
-    states = list(range(len(names), jacobian.shape[1]))
+    problem = _Linear(jacobian, residual, stretches, names)
     while told:
-        _, covariance = covariances(jacobian[:, [*told, *states]], residual, stretches)
-        covariance = covariance[: len(told), : len(told)]
-        deviations = np.sqrt(np.diag(covariance))
+        deviations = np.sqrt(np.diag(problem.covariance(told)))
         worst = int(np.argmax(deviations))
         if deviations[worst] <= CERTAIN:
             break
         kept[names[told[worst]]] = float(deviations[worst])
-        pairs += _with(covariance, worst, [names[i] for i in told])
+        pairs += problem.pair(told, worst)
         del told[worst]
-    if told:
-        own = [names[i] for i in told]
-        found = [pair for place in range(len(told)) for pair in _with(covariance, place, own)]
-        seen: set[frozenset[str]] = set()
-        for pair in sorted(found, key=lambda each: -each.correlation):
-            if (both := frozenset((pair.first, pair.second))) not in seen:
-                seen.add(both)
-                pairs.append(pair)
-    return Told(tuple(names[i] for i in told), kept, tuple(pairs))
+    found = [pair for place in range(len(told)) for pair in problem.pair(told, place)]
+    alike = {frozenset((pair.first, pair.second)): pair for pair in reversed(found)}
+    return Told(tuple(names[i] for i in told), kept, (*pairs, *reversed(alike.values())))
 
 
-def _with(covariance: Vector, place: int, names: Sequence[str]) -> list[Pair]:
-    """Return the pair of an unknown with the one that it is most correlated with."""
-    scale = np.sqrt(np.diag(covariance))
-    correlation = covariance[place] / scale / scale[place]
-    correlation[place] = 0.0
-    other = int(np.nanargmax(np.abs(correlation)))
-    if abs(correlation[other]) <= ALIKE:
-        return []
-    ratio = covariance[other, place] / covariance[place, place]
-    left = max(covariance[other, other] - ratio * covariance[other, place], 0.0)
-    return [Pair(names[other], names[place], float(correlation[other]), float(ratio), left**0.5)]
+@dataclass(frozen=True)
+class _Linear:
+    """A problem at its solution: unknowns behind ``names`` are always looked for."""
+
+    jacobian: Vector
+    residual: Vector
+    stretches: Sequence[int]
+    names: Sequence[str]
+
+    def covariance(self, looked_for: Sequence[int]) -> Vector:
+        """Return the covariance of the unknowns of ``names`` that are looked for."""
+        columns = [*looked_for, *range(len(self.names), self.jacobian.shape[1])]
+        _, found = covariances(self.jacobian[:, columns], self.residual, self.stretches)
+        count = len(looked_for)
+        return found[:count, :count]
+
+    def pair(self, looked_for: Sequence[int], place: int) -> list[Pair]:
+        """Return the pair of an unknown with the one that it is most correlated with."""
+        if len(looked_for) < 2:
+            return []
+        covariance = self.covariance(looked_for)
+        scale = np.sqrt(np.diag(covariance))
+        correlation = covariance[place] / scale / scale[place]
+        correlation[place] = 0.0
+        other = int(np.argmax(np.abs(correlation)))
+        if abs(correlation[other]) <= ALIKE:
+            return []
+        # The combination is as certain as the first would be if the second were known.
+        known = [each for each in looked_for if each != looked_for[place]]
+        certain = self.covariance(known)[known.index(looked_for[other])]
+        return [
+            Pair(
+                self.names[looked_for[other]],
+                self.names[looked_for[place]],
+                float(correlation[other]),
+                float(covariance[other, place] / covariance[place, place]),
+                float(np.sqrt(certain[known.index(looked_for[other])])),
+            )
+        ]
