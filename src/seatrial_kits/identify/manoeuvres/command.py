@@ -19,7 +19,7 @@ from seatrial.trial.running.output import claim_folder
 
 from .craft import Craft
 from .page import HEADINGS, pass_rows, table_rows, write_page
-from .passes import QUANTITIES, SPEED, read_pass
+from .passes import QUANTITIES, SPEED, YAW, read_pass
 from .replay import craft_of
 from .study import ManoeuvreStudy, manoeuvre_study
 from .vehicle_copy import write_copy
@@ -37,7 +37,7 @@ def manoeuvres(
         typer.Option(
             "--columns",
             metavar="WHAT=NAME[:UNIT],...",
-            help="Columns of the logs, and of the orders: helm, speed, or inputs of the craft.",
+            help="Columns of the logs; orders are helm or yaw, and speed, or inputs of the craft.",
         ),
     ] = None,
     free: Annotated[
@@ -77,16 +77,17 @@ def manoeuvres(
 
 
 def _unit(craft: Craft, what: str) -> str:
-    if what == SPEED:
+    if what in (YAW, SPEED):
         return "1"
     if what not in craft.model.u_names:
-        known = [*QUANTITIES, SPEED, *craft.fed]
+        known = [*QUANTITIES, YAW, SPEED, *craft.fed]
         raise InputError(f"--columns: {unknown('column', what, known)}")
     return craft.unit(what)
 
 
 def _print(found: ManoeuvreStudy) -> None:
-    print_table(_table(HEADINGS, table_rows(found)))
+    # The page has the column of the bootstrap, for which a terminal is too narrow.
+    print_table(_table(HEADINGS[:-1], [row[:-1] for row in table_rows(found)]))
     heads = ("", "track before", "identified", "heading before", "identified")
     print_table(_table(heads, pass_rows(found)))
     print_notes(found.notes)

@@ -13,7 +13,7 @@ from seatrial.whole_file import write_whole
 from .intervals import WITHIN
 from .study import ManoeuvreStudy, Row, Shown
 
-HEADINGS = ("", "in the file", "identified", "+-", "by bootstrap", "unit", "told apart")
+HEADINGS = ("", "before", "identified", "+-", "unit", "told", "+- by bootstrap")
 _DEGREES = math.degrees(1.0)
 
 
@@ -25,10 +25,10 @@ def table_rows(study: ManoeuvreStudy) -> list[tuple[str, ...]]:
 def _texts(row: Row) -> tuple[str, ...]:
     before = "" if row.is_current else number(row.before, 4)
     if not row.told:
-        return (row.name, before, "kept", "", "", row.unit, "no")
-    halves = (number(WITHIN * each, 2) for each in (row.deviation, row.resampled))
+        return (row.name, before, "kept", "", row.unit, "no", "")
+    half, drawn = (number(WITHIN * each, 2) for each in (row.deviation, row.resampled))
     told = "hardly" if row.partner else "yes"
-    return (row.name, before, number(row.value, 4), *halves, row.unit, told)
+    return (row.name, before, number(row.value, 4), half, row.unit, told, drawn)
 
 
 def pass_rows(study: ManoeuvreStudy) -> list[tuple[str, ...]]:

@@ -16,25 +16,24 @@ from seatrial_kits.sea_trials.figures.record import Record
 from seatrial_kits.sea_trials.log_file import UNITS, Column, read_columns, read_log, read_series
 from seatrial_kits.sea_trials.run_record import COMPONENT, done_in
 
-HELM, SPEED = "helm", "speed"
-"""Orders to the pilot: angle, rad, positive to turn to starboard; share of full speed."""
+YAW, SPEED = "yaw", "speed"
+"""Orders to the pilot: helm, positive to turn to starboard, and speed, as shares of full ones."""
 QUANTITIES = tuple(UNITS)
 """What a log may have beside the orders."""
-_FULL_HELM = math.radians(35.0)
+FULL_HELM = math.radians(35.0)
+"""Helm, rad, that is full deflection in a log."""
 
 
 @dataclass(frozen=True)
 class Pass:
     """A manoeuvre that was done: its record, and the orders (n,) at its rows by name.
 
-    Orders are `HELM` and `SPEED`, or inputs of the craft by scalar name, in their units.
+    Orders are `YAW` and `SPEED`, or inputs of the craft by scalar name, in their units.
     """
 
     path: Path
     record: Record
     orders: Mapping[str, Vector]
-    full_helm: float
-    """Helm of full deflection, rad."""
     is_held: bool = False
     """Whether orders hold until the next row, as those of a run do; else linear between."""
 
@@ -48,7 +47,8 @@ def read_pass(path: Path, columns: Sequence[str], unit: Callable[[str], str]) ->
     """Return the pass in a run folder, or in a log.
 
     ``columns`` are texts WHAT=NAME[:UNIT] or WHAT=NUMBER; a WHAT that is no quantity of a record
-    is an order, whose unit is ``unit(WHAT)``. A run begins at the row before its first order.
+    is an order, whose unit is ``unit(WHAT)``. The helm of the record over `FULL_HELM` is the order
+    `YAW` where no other one steers. A run begins at the row before its first order.
     Raises InputError as `read_log` does, for a run without manoeuvre, and for a log without
     orders.
     """
@@ -69,8 +69,8 @@ def read_pass(path: Path, columns: Sequence[str], unit: Callable[[str], str]) ->
             )
         orders[what] = _order(path, what, written, unit(what), len(record.time))
     if record.helm is not None and not any(name != SPEED for name in orders):
-        orders[HELM] = record.helm
-    return Pass(path, record, orders, _FULL_HELM)
+        orders[YAW] = record.helm / FULL_HELM
+    return Pass(path, record, orders)
 
 
 def _order(path: Path, what: str, written: str, unit: str, rows: int) -> Vector:
@@ -92,7 +92,7 @@ def _of_run(path: Path) -> Pass:
     columns = {key: values[first:] for key, values in done.record.columns().items()}
     record = Record(**columns)
     speed = np.asarray(run.signals[signal], np.float64)[first:]
-    return Pass(path, record, {HELM: record.helm, SPEED: speed}, done.full_helm, is_held=True)
+    return Pass(path, record, {YAW: record.helm / done.full_helm, SPEED: speed}, is_held=True)
 
 
 def thinned(record: Record, most: int) -> Record:

@@ -21,7 +21,7 @@ from seatrial.system.flattening import load_rig
 from seatrial.system.system import System
 
 from .craft import Craft, craft_in
-from .passes import HELM, SPEED, Pass
+from .passes import SPEED, YAW, Pass
 
 _SAMPLED = 0.05
 """Time between two samples of what reaches the craft, s; a step of the rig if that is longer."""
@@ -60,24 +60,24 @@ def craft_of(vehicle: str, variant: str | None) -> Craft:
 def inputs_of(craft: Craft, vehicle: str, variant: str | None, run: Pass) -> Inputs:
     """Return the inputs of the craft during a pass, as its equations take them.
 
-    Orders that are inputs of the craft act directly. Helm and speed go to the vehicle's pilot in
-    its mode ``manual``: yaw is helm / full_helm, surge the speed order, held to -1 to 1; what
-    pilot and actuators make of them reaches the craft, at the steps of the vehicle's rig.
+    Orders that are inputs of the craft act directly. Yaw and speed go to the vehicle's pilot in
+    its mode ``manual``, held to -1 to 1; what pilot and actuators make of them reaches the craft,
+    at the steps of the vehicle's rig.
 
     Raises InputError for an order that is neither, and for inputs that nothing gives.
     """
     names = craft.model.u_names
     for name in run.orders:
-        if name not in (HELM, SPEED, *names):
-            known = [HELM, SPEED, *craft.fed]
+        if name not in (YAW, SPEED, *names):
+            known = [YAW, SPEED, *craft.fed]
             raise InputError(f"{run.path}: {unknown('order', name, known)}")
     time, replayed = run.record.time, np.zeros((len(run.record.time), len(craft.fed)))
     direct = [name for name in run.orders if name in names]
     lacking = [name for name in craft.fed if name not in direct]
-    if HELM in run.orders and SPEED in run.orders:
+    if YAW in run.orders and SPEED in run.orders:
         time, replayed = _replayed(craft, vehicle, variant, run)
     elif lacking and not direct:
-        lacking_order = SPEED if HELM in run.orders else HELM
+        lacking_order = SPEED if YAW in run.orders else YAW
         raise InputError(
             f"{run.path}: the order {lacking_order} is needed: --columns {lacking_order}=NAME or "
             f"{lacking_order}=NUMBER; or orders to {craft.name}: {', '.join(craft.fed)}"
@@ -97,8 +97,7 @@ def inputs_of(craft: Craft, vehicle: str, variant: str | None, run: Pass) -> Inp
 def _replayed(craft: Craft, vehicle: str, variant: str | None, run: Pass) -> tuple[Vector, Vector]:
     """Return times (n,) and what reaches the inputs (n, fed) of the craft then."""
     time = run.record.time - run.record.start + _SETTLING
-    yaw = np.clip(run.orders[HELM] / run.full_helm, -1.0, 1.0)
-    surge = np.clip(run.orders[SPEED], -1.0, 1.0)
+    yaw, surge = (np.clip(run.orders[name], -1.0, 1.0) for name in (YAW, SPEED))
     rows = [(0.0, surge[0], yaw[0]), *zip(time, surge, yaw, strict=True)]
     # A step beyond the end is asked for.
     rows.append((float(time[-1]) + 2.0 * _SAMPLED, surge[-1], yaw[-1]))

@@ -33,7 +33,7 @@ def noisy(time, north, east, heading, seed, errors=(GNSS, COMPASS)):
 def kvlcc2(name, seed=None):
     rows = np.loadtxt(FOLDER / f"kvlcc2_{name}.csv", delimiter=",", skiprows=2)
     orders = {"rudder": -rows[:, 7], "propeller_order": np.ones(len(rows))}
-    return Pass(Path(name), noisy(*rows[:, :4].T, seed), orders, np.radians(35.0))
+    return Pass(Path(name), noisy(*rows[:, :4].T, seed), orders)
 
 
 def otter(name, seed=None, errors=(0.02, COMPASS)):
@@ -42,7 +42,7 @@ def otter(name, seed=None, errors=(0.02, COMPASS)):
     orders = {"force_1.x": port + starboard, "moment_1.z": ARM * (port - starboard)}
     orders |= dict.fromkeys(("force_1.y", "force_1.z", "moment_1.x", "moment_1.y"), 0.0 * port)
     record = noisy(rows["t"], rows["x"], rows["y"], rows["psi"], seed, errors)
-    return Pass(Path(name), record, orders, np.radians(35.0))
+    return Pass(Path(name), record, orders)
 
 
 def _thrust(rate):

@@ -5,11 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from seatrial.errors import InputError
 from seatrial_kits.identify.manoeuvres.replay import craft_of
 from seatrial_kits.identify.manoeuvres.study import manoeuvre_study
 
-from .passes_of import kvlcc2, otter
+from .passes_of import kvlcc2
 
 
 def perturbed(craft, free, seed=5, share=0.3):
@@ -67,9 +66,7 @@ def test_with_noise_of_gnss_and_compass_at_1_hz_intervals_hold_the_published_val
     assert heading == pytest.approx(np.radians(0.3), rel=0.05)
 
 
-def test_a_turn_shows_the_current(tmp_path):
-    found, rows = identified("kvlcc2", [kvlcc2("full_turn_p35_current", seed=2)], ("resistance",))
+def test_a_turn_shows_the_current():
+    _, rows = identified("kvlcc2", [kvlcc2("full_turn_p35_current", seed=2)], ("resistance",))
     currents = [row.value for row, _ in rows if row.is_current]
     assert currents == pytest.approx([0.5, 1.0], abs=0.005)
-
-
