@@ -60,7 +60,7 @@ def test_steps_of_10_ms_follow_the_source(case):
     expected, component = columns(case), auv()
     component.initialise()
     component.begin()
-    names, rows = component._compiled().x_names, []
+    names, rows = component.compiled().x_names, []
     for k in range(len(expected["t"])):
         rows.append([v for p in component.state_ports for v in component.get(p.name)])
         for name, value in orders(case, k / 10).items():

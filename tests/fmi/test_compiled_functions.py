@@ -20,7 +20,7 @@ PLANTS = [
 
 @pytest.mark.parametrize("name", PLANTS)
 def test_the_bits_are_those_of_casadi(name: str) -> None:
-    model = component_class(name)("plant")._compiled()
+    model = component_class(name)("plant").compiled()
     draw = np.random.default_rng(1)
     for function in (model.rk4, model.out):
         compiled = compiled_function(function)

@@ -182,13 +182,20 @@ class Plant(Component):
 
     # ------------------------------------------------------------------ tools
 
+    def compiled(self) -> Model:
+        """Return the compiled equations in the form that the text parameters choose."""
+        key = tuple(getattr(self, name) for name in self._texts)
+        if key not in self._models:
+            self._models[key] = self._compile(dict(zip(self._texts, key, strict=True)))
+        return self._models[key]
+
     def derivatives(self, x: Vector, u: Vector | None = None) -> Vector:
         """Return dx/dt at stacked state ``x`` and stacked inputs ``u`` (default: as set)."""
-        return np.asarray(self._compiled().rhs(x, self._stacked_u(u), self._stacked_p())).ravel()
+        return np.asarray(self.compiled().rhs(x, self._stacked_u(u), self._stacked_p())).ravel()
 
     def linearise(self, x: Vector, u: Vector | None = None) -> Linearisation:
         """Return the exact linearisation at stacked state ``x``, inputs ``u`` (default: as set)."""
-        model = self._compiled()
+        model = self.compiled()
         matrices = model.jacobians(x, self._stacked_u(u), self._stacked_p())
         a, b, c, d = (np.asarray(matrix) for matrix in matrices)
         return Linearisation(a, b, c, d, model.x_names, model.u_names, model.y_names)
@@ -209,7 +216,7 @@ class Plant(Component):
         """
         from scipy.optimize import root
 
-        model = self._compiled()
+        model = self.compiled()
         known = [*model.x_names, *(port.name for port in self.state_ports)]
         for name in hold:
             if name not in known:
@@ -261,7 +268,7 @@ class Plant(Component):
         from scipy import integrate
 
         solver_class = getattr(integrate, method)
-        model, p, x = self._compiled(), self._stacked_p(), self._start_state()
+        model, p, x = self.compiled(), self._stacked_p(), self._start_state()
         arguments, dx = [x.copy(), self._stacked_u(None), p], np.zeros(len(x))
         _buffer, evaluate = bind(model.rhs, arguments, dx)
         last = times[-1]
@@ -311,7 +318,7 @@ class Plant(Component):
                 ) from error
             return self._inputs_of(given)
 
-        model, x = self._compiled(), self._start_state()
+        model, x = self.compiled(), self._start_state()
         sundials = Sundials(model, inputs, self._stacked_p(), rtol=rtol, atol=atol)
         solved = {times[0]: x}
         edges = [times[0], *sorted({b for b in breaks if times[0] < b < times[-1]}), times[-1]]
@@ -321,12 +328,6 @@ class Plant(Component):
             solved.update(zip(at[1:], rows, strict=True))
             x = rows[-1]
         return Reference(times, np.array([solved[time] for time in times.tolist()]), model.x_names)
-
-    def _compiled(self) -> Model:
-        key = tuple(getattr(self, name) for name in self._texts)
-        if key not in self._models:
-            self._models[key] = self._compile(dict(zip(self._texts, key, strict=True)))
-        return self._models[key]
 
     @classmethod
     def _compile(cls, texts: Mapping[str, str]) -> Model:
@@ -359,7 +360,7 @@ class Plant(Component):
 
     def _build_buffers(self) -> None:
         # A buffer does not keep its arrays alive: they stay attributes of the instance.
-        model = self._compiled()
+        model = self.compiled()
         self._u, self._p = self._stacked_u(None), self._stacked_p()
         self._h, self._x1 = np.zeros(1), np.zeros(len(model.x_names))
         self._y = np.zeros(len(model.y_names))

@@ -7,7 +7,6 @@ from types import SimpleNamespace
 from typing import Any
 
 from seatrial.model.component import Input, Output, Parameter
-from seatrial.model.expressions import Model
 from seatrial.model.plant import Plant, State
 
 
@@ -62,10 +61,6 @@ class AxisMotion(Plant):
             "share": (goal - x.share) / p.time_constant if has_lag else 0.0,
         }
         return slopes, {"acceleration": acceleration}
-
-    def model(self) -> Model:
-        """Return the compiled equations, which a prediction chains and differentiates."""
-        return self._compiled()
 
 
 class AxisRotation(AxisMotion):

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import numpy as np
 
@@ -232,28 +233,37 @@ def _guess(log: AxisLog, delay: int, structure: Structure) -> Vector:
     return np.array([guess.get(name, 0.0) for name in UNKNOWNS])
 
 
-def covariances(jacobian: Vector, residual: Vector) -> tuple[Vector, Vector]:
+def covariances(
+    jacobian: Vector, residual: Vector, stretches: Sequence[int] | None = None
+) -> tuple[Vector, Vector]:
     """Return the covariance of the estimate if the residual is white, and as it is.
 
     White: s^2 (J^T J)^-1. As it is, with its autocorrelation R: (J^T J)^-1 [sum_ij R_(i-j) J_i
     J_j^T] (J^T J)^-1 (Klein and Morelli 2006), R up to lags of sqrt(n) with Bartlett's weights,
-    which keep the sum positive. ``jacobian`` (n, k), ``residual`` (n,).
+    which keep the sum positive. ``jacobian`` (n, k), ``residual`` (n,); ``stretches`` are the
+    lengths of its parts that are not correlated with each other, None: one. What the residual
+    does not depend on has a variance beyond all others.
     """
     count, k = jacobian.shape
     scale = np.sqrt((jacobian**2).sum(axis=0))
     scale[scale == 0.0] = 1.0
-    J = jacobian / scale
-    inverse = np.linalg.pinv(J.T @ J)
-    correlation = autocovariance(residual, math.isqrt(count))
-    middle = correlation[0] * (J.T @ J)
-    for lag in range(1, len(correlation)):
-        weight = 1.0 - lag / len(correlation)
-        cross = J[:-lag].T @ J[lag:]
-        middle = middle + weight * correlation[lag] * (cross + cross.T)
+    U, singular, V = np.linalg.svd(jacobian / scale, full_matrices=False)
+    inverse = (
+        V.T / np.maximum(singular, np.finfo(float).eps * singular.max(initial=1.0)) / scale[:, None]
+    )
+    middle = np.zeros((k, k))
+    edges = np.cumsum([0, *(stretches or [count])])
+    for first, last in pairwise(edges):
+        part = U[first:last]
+        correlation = autocovariance(residual[first:last], math.isqrt(last - first))
+        middle += correlation[0] * (part.T @ part)
+        for lag in range(1, len(correlation)):
+            weight = 1.0 - lag / len(correlation)
+            cross = part[:-lag].T @ part[lag:]
+            middle += weight * correlation[lag] * (cross + cross.T)
     spread = count / max(count - k, 1)
-    unscale = np.outer(1.0 / scale, 1.0 / scale)
-    white = correlation[0] * inverse * spread
-    return white * unscale, inverse @ middle @ inverse * spread * unscale
+    white = residual @ residual / count * inverse @ inverse.T
+    return white * spread, inverse @ middle @ inverse.T * spread
 
 
 def autocovariance(residual: Vector, lags: int) -> Vector:

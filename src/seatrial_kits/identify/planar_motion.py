@@ -9,7 +9,6 @@ from typing import Any
 import casadi as ca
 
 from seatrial.model.component import Input, Output, Parameter
-from seatrial.model.expressions import Model
 from seatrial.model.plant import Plant, State
 
 _UVR = ("u", "v", "r")
@@ -69,7 +68,3 @@ class PlanarMotion(Plant):
         }
         carried = ca.vertcat(change[0] - sway * yaw, change[1] + surge * yaw)
         return slopes, {"acceleration": carried}
-
-    def model(self) -> Model:
-        """Return the compiled equations, which a prediction chains and differentiates."""
-        return self._compiled()

@@ -209,7 +209,7 @@ def _predictor(log: PlanarLog, known: PlanarKnown) -> Predictor:
     """Return a function of the unknowns: readings (3, n), and their sensitivities (3, n, k)."""
     motion = PlanarMotion("planar")
     motion.set("lag", "thruster" if _lags(known) else "none")
-    model = motion.model()
+    model = motion.compiled()
     count = len(log.commands)
     substeps = max(_LEAST_SUBSTEPS, math.ceil(log.period / LONGEST_SUBSTEP - 1e-9))
     q = ca.SX.sym("q", len(UNKNOWNS))

@@ -71,7 +71,7 @@ def _compiled(kind: type[AxisMotion], law: str, lag: str, reading: Reading, coun
     motion = kind()
     motion.set("thrust_law", law)
     motion.set("lag", lag)
-    model = motion.model()
+    model = motion.compiled()
     steps: dict[int, Any] = {}
 
     def run(unknowns: Vector, command: Vector, period: float, substeps: int) -> Vector:

@@ -106,7 +106,7 @@ def header(plant: Plant) -> str:
 
 def model(plant: Plant) -> str:
     """Return ``model.c``: the equations with the text parameters' values, and the tables."""
-    compiled = plant._compiled()
+    compiled = plant.compiled()
     generator = ca.CodeGenerator("model.c", {"with_header": False, "main": False})
     sizes = {}
     for function in (compiled.rk4, compiled.out, _along(compiled.out)):

@@ -103,6 +103,7 @@ def _sources(
         run = made()
         for scalar, value in given.items():
             run.set(scalar, value)
+        assert isinstance(run, Plant)
         require_start(run, name)
         text, own, parts = model(component), plant_header(component), ["plant.c"]
     else:

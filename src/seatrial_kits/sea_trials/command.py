@@ -29,6 +29,7 @@ from .figures.result import Figures
 from .log_record import read_record
 from .page import DATA, evaluated, failed, run_folders, write_pages
 from .run_record import done_in
+from .uncertainty import read_errors, with_uncertainty
 
 trials_app = typer.Typer(no_args_is_help=True, pretty_exceptions_enable=False)
 CRITERIA = ("imo", "none")
@@ -62,6 +63,10 @@ def figures(
         Path | None, typer.Option("--compare", metavar="RUN", help="A run to put beside it.")
     ] = None,
     criteria: Annotated[str | None, typer.Option("--criteria", help="imo: MSC.137(76).")] = None,
+    errors: Annotated[
+        list[str] | None,
+        typer.Option("--error", metavar="WHAT=VALUE,...", help="Standard deviations of sensors."),
+    ] = None,
 ) -> None:
     """Show the figures of a manoeuvre; status 1 if a criterion does not hold."""
     _check_criteria(criteria)
@@ -72,6 +77,8 @@ def figures(
     read = _read(log, manoeuvre, read_columns(columns or []), format_name, window, bool(order))
     done = _with(read, length, heading, depth, order or [])
     found = figures_of(done)
+    if errors:
+        found = with_uncertainty(done, found, read_errors(errors))
     beside = None if compare is None else figures_of(done_in(load_run(compare)))
     verdicts = _verdicts(done, found) if criteria == "imo" else []
     answer.result = {**found.as_dict(), "criteria": [_verdict(each) for each in verdicts]}
@@ -184,6 +191,9 @@ def _print(found: Figures, beside: Figures | None, length: float | None) -> None
     table = Table(box=SIMPLE, padding=(0, 1, 0, 0), title=found.manoeuvre, title_justify="left")
     table.add_column("")
     table.add_column("value", justify="right")
+    is_uncertain = any(figure.uncertainty is not None for figure in found.found.values())
+    if is_uncertain:
+        table.add_column("+-", justify="right")
     table.add_column("unit")
     table.add_column("in lengths", justify="right")
     if beside is not None:
@@ -192,8 +202,9 @@ def _print(found: Figures, beside: Figures | None, length: float | None) -> None
     for name, figure in found.found.items():
         in_lengths = number(figure.value / length) if length and figure.unit == "m" else ""
         factor, unit = person_scale(figure.unit)
-        row = [name, shown_number(factor * figure.value), unit]
-        row.append(in_lengths)
+        half = figure.uncertainty
+        halves = ["" if half is None else number(factor * half, 2)] if is_uncertain else []
+        row = [name, shown_number(factor * figure.value), *halves, unit, in_lengths]
         if beside is not None and name in beside:
             other = beside[name]
             row += [shown_number(factor * other), _difference(figure.value, other)]

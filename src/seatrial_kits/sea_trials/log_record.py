@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from seatrial.errors import InputError
+from seatrial.trial.logs.channels import Log
 from seatrial.trial.logs.common_time import WHOLE, Window
 from seatrial.trial.logs.formats import read_log
 from seatrial.trial.logs.motion import motion
@@ -15,6 +16,8 @@ from .figures.record import Record
 
 FURTHER = ("helm", "roll", "pitch", "depth", "power")
 """Quantities of a record besides heading and position."""
+MOTION = ("time", "north", "east", "latitude", "longitude", "heading", *FURTHER)
+"""All quantities that a record is made of."""
 
 
 def read_record(
@@ -27,9 +30,15 @@ def read_record(
 
     Raises InputError as `read_log`, `motion` and `Record` do.
     """
-    log = read_log(path, format_name, columns.get("time"))
+    return record_of(read_log(path, format_name, columns.get("time")), columns, window)
+
+
+def record_of(
+    log: Log, columns: Mapping[str, Column], window: Window = WHOLE
+) -> tuple[Record, tuple[str, ...]]:
+    """Return the record in a log that is read, and notes; raises InputError as `read_record`."""
     found = motion(log, columns, FURTHER, window)
     try:
         return Record(found.time, **found.values), (*log.notes, *found.notes)
     except InputError as error:
-        raise InputError(f"{path}: {error}") from None
+        raise InputError(f"{log.path}: {error}") from None

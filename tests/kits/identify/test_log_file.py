@@ -106,7 +106,10 @@ def test_columns_that_do_not_fit(pool, old, new, expected):
         ("t,beta,ax,roll,pitch\n0,1,2\n", "line 2: 3 values, the header has 5"),
         ("t,t,beta,ax,roll,pitch\n", "the column 't' occurs twice"),
         ('t,beta,ax,roll,pitch\n0,"1,2\n', "not CSV"),
-        ("t,beta,ax,roll,pitch\n0,0,0,0,0\n1,0,0,0,0\n2,0,0,0,0\n", "3 rows, at least 50 are needed"),
+        (
+            "t,beta,ax,roll,pitch\n0,0,0,0,0\n1,0,0,0,0\n2,0,0,0,0\n",
+            "3 rows, at least 50 are needed",
+        ),
     ],
 )
 def test_files_that_are_no_log(pool, content, expected):

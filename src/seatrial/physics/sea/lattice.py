@@ -15,8 +15,8 @@ PLACE, PHASE, DIRECTION, AMPLITUDE = range(4)
 """Streams of draws of a band."""
 
 TOLD_APART = math.pi / 3600.0
-"""Width of bands, rad/s, half of what an hour tells apart: hours with drawn amplitudes differ then as
-those of a Gaussian sea, within a tenth."""
+"""Width of bands, rad/s, half of what an hour tells apart: with drawn amplitudes hours then differ
+as those of a Gaussian sea, within a tenth."""
 
 _OFFSET = 2**20
 """Added to a band's index, so that it counts from above 0."""

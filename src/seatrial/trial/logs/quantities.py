@@ -149,12 +149,22 @@ def _default(log: Log, what: str) -> Column | None:
     return None
 
 
-def series(log: Log, what: str, column: Column, *, units_needed: bool = False) -> Series:
-    """Return one quantity, served by a column; see `chosen`."""
+def series(
+    log: Log,
+    what: str,
+    column: Column,
+    quantity: Quantity | None = None,
+    *,
+    units_needed: bool = False,
+) -> Series:
+    """Return one quantity, served by a column; see `chosen`.
+
+    ``quantity`` says what is none of `QUANTITIES`, such as an order to an actuator.
+    """
     name, sign = _split(log, column.name)
     if name not in log.channels:
         raise InputError(f"{log.path}: {what}: {unknown(log.noun, name, log.channels)}")
-    found, quantity = log.channels[name], QUANTITIES[what]
+    found, quantity = log.channels[name], quantity or QUANTITIES[what]
     factor, offset = _factor(log, found, column.unit, quantity, units_needed)
     if log.table and len(bad := np.flatnonzero(~np.isfinite(found.values))):
         text = found.wrong.get(int(bad[0]), "nothing")

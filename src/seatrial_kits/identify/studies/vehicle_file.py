@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -180,18 +180,19 @@ def _lines(file: VehicleFile) -> Iterator[str]:
     if file.default is not None:
         yield f"default = {_text(file.default)}"
     for table, entries in file.components.items():
-        yield from _table(_key(table), entries)
+        yield from table_lines((table,), entries)
     for variant, tables in file.variants.items():
         yield from ("", f"[variants.{_key(variant)}]")
         for table, entries in tables.items():
-            yield from _table(f"variants.{_key(variant)}.{_key(table)}", entries)
+            yield from table_lines(("variants", variant, table), entries)
     for table, ports in file.presets.items():
         for port, presets in ports.items():
-            yield from _table(f"presets.{_key(table)}.{_key(port)}", presets)
+            yield from table_lines(("presets", table, port), presets)
 
 
-def _table(head: str, entries: Mapping[str, WrittenEntry]) -> Iterator[str]:
-    yield from ("", f"[{head}]")
+def table_lines(path: Sequence[str], entries: Mapping[str, WrittenEntry]) -> Iterator[str]:
+    """Yield the lines of a table of entries, an empty one first; ``path`` are its keys."""
+    yield from ("", f"[{'.'.join(map(_key, path))}]")
     for name, entry in entries.items():
         written = entry.model_dump(exclude_none=True)
         if isinstance(entry, DerivedEntry) and not entry.source:

@@ -15,6 +15,13 @@ class Figure:
 
     value: float
     unit: str
+    uncertainty: float | None = None
+    """Half of the interval of 95 %, where it is known."""
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return what JSON holds."""
+        said = {"value": self.value, "unit": self.unit}
+        return said if self.uncertainty is None else {**said, "uncertainty": self.uncertainty}
 
 
 @dataclass(frozen=True)
@@ -52,7 +59,7 @@ class Figures(Mapping[str, float]):
 
     def as_dict(self) -> dict[str, Any]:
         """Return what JSON holds: values with units, reasons, notes."""
-        figures = {name: {"value": f.value, "unit": f.unit} for name, f in self.found.items()}
+        figures = {name: figure.as_dict() for name, figure in self.found.items()}
         return {
             "manoeuvre": self.manoeuvre,
             "figures": figures,

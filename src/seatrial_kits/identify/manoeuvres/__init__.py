@@ -1,0 +1,1 @@
+"""Models of vehicles identified from standard manoeuvres."""

@@ -1,0 +1,222 @@
+"""Study of a vehicle's manoeuvres: its parameters from the logs, with what can be told of them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from seatrial.errors import InputError
+from seatrial.model.expressions import Vector
+from seatrial.model.readable import number
+
+from ..assessment import LEAST_FIT, Verdict, fit
+from .craft import Craft
+from .intervals import WITHIN, bootstrap, deviations
+from .passes import Pass
+from .prediction import motion_of
+from .problem import Problem, Solution
+from .replay import inputs_of
+from .telling import Told, told_apart
+
+_PRIOR = 0.5
+"""Standard deviation of relative changes while it is not yet known which are told."""
+_TURNED = math.radians(10.0)
+
+
+@dataclass(frozen=True)
+class Row:
+    """A parameter, or a component of the current: in SI units."""
+
+    name: str
+    unit: str
+    before: float
+    """Value in the vehicle's file; no current."""
+    value: float
+    """That identified; of one that is kept, that before."""
+    deviation: float
+    """Standard deviation, by the information matrix; what it would be, of one that is kept."""
+    resampled: float
+    """The same by bootstrap; 0 of one that is kept."""
+    told: bool
+    """Whether the passes show it; else it keeps its value."""
+    partner: str
+    """The parameter that it is hardly told apart from, empty if there is none."""
+    is_current: bool
+    """Whether it is the current of a pass, which no file has."""
+
+    @property
+    def interval(self) -> tuple[float, float]:
+        """Interval of 95 %, by the larger one of both deviations."""
+        half = WITHIN * max(self.deviation, self.resampled)
+        return self.value - half, self.value + half
+
+
+@dataclass(frozen=True)
+class Shown:
+    """Readings (3, n) of a pass: those of the log, and of the model before and after."""
+
+    run: Pass
+    time: Vector
+    log: Vector
+    before: Vector
+    after: Vector
+
+    def rms(self, simulated: Vector) -> tuple[float, float]:
+        """Return the root mean square distance of the track, m, and of the heading, rad."""
+        north, east, heading = self.log - simulated
+        return math.sqrt(np.mean(north**2 + east**2)), math.sqrt(np.mean(heading**2))
+
+    @property
+    def fit(self) -> float:
+        """The lesser fit (`assessment.fit`) of track and, where it turns by 10 deg, heading."""
+        track = fit(*((each[:2].T - self.log[:2].mean(axis=1)).ravel()
+                      for each in (self.log, self.after)))  # fmt: skip
+        turns = np.ptp(self.log[2]) > _TURNED
+        return min(track, fit(self.log[2], self.after[2])) if turns else track
+
+
+@dataclass(frozen=True)
+class ManoeuvreStudy:
+    """What was identified from passes of a vehicle."""
+
+    vehicle: str
+    craft: Craft
+    rows: tuple[Row, ...]
+    notes: tuple[str, ...]
+    """Which parameters are not told apart, and the combinations that can be had."""
+    shown: tuple[Shown, ...]
+    verdicts: tuple[Verdict, ...]
+
+    @property
+    def accepted(self) -> bool:
+        """Whether every rule is kept."""
+        return all(verdict.passed for verdict in self.verdicts)
+
+    @property
+    def parameters(self) -> tuple[Row, ...]:
+        """Parameters of the vehicle that the passes show."""
+        return tuple(row for row in self.rows if row.told and not row.is_current)
+
+
+def manoeuvre_study(
+    vehicle: str, passes: Sequence[Pass], craft: Craft, free: Sequence[str], variant: str | None
+) -> ManoeuvreStudy:
+    """Identify the parameters ``free`` of a vehicle from passes, each in a uniform current.
+
+    Output error: every pass is simulated from its orders alone, and parameters, the current and
+    the state at the first row of each pass are chosen so that north, east and heading are nearest
+    to those of the log, each weighted by its own residual. Parameters that the passes do not show
+    (`told_apart`) keep the values of the file. Raises InputError as `inputs_of` and `motion_of` do,
+    and if the passes show none.
+    """
+    motions = [
+        motion_of(craft, run.record, inputs_of(craft, vehicle, variant, run)) for run in passes
+    ]
+    problem = Problem(craft, motions, free)
+    held = problem.solve(problem.named, problem.guess(), prior=_PRIOR)
+    told = told_apart(held.jacobian, held.residual, problem.stretches, problem.named)
+    if not set(told.told) & set(problem.free):
+        raise InputError(
+            f"{', '.join(run.name for run in passes)}: no parameter of {', '.join(free)} is told: "
+            "the manoeuvres do not show them through the noise"
+        )
+    start = held.unknowns.copy()
+    start[[problem.named.index(name) for name in told.kept]] = 0.0
+    final = problem.solve(told.told, start, scales=held.scales)
+    start = final.unknowns.copy()
+    start[: len(problem.free)] = 0.0
+    currents = [name for name in told.told if name not in problem.free]
+    before = problem.solve(currents, start, scales=held.scales)
+    rows = _rows(problem, final, told)
+    simulated = (problem.readings(each.unknowns) for each in (before, final))
+    shown = tuple(
+        Shown(run, motion.record.time, motion.measured, old, new)
+        for run, motion, old, new in zip(passes, motions, *simulated, strict=True)
+    )
+    notes, verdicts = _notes(problem, final, told), _verdicts(craft, rows, shown)
+    return ManoeuvreStudy(vehicle, craft, rows, tuple(notes), shown, tuple(verdicts))
+
+
+def _rows(problem: Problem, final: Solution, told: Told) -> tuple[Row, ...]:
+    named, craft = problem.named, problem.craft
+    places = [i for i, name in enumerate(named) if name in told.told]
+    kept = [i for i, name in enumerate(problem.free) if name in told.kept]
+    own = [*places, *range(len(named), final.jacobian.shape[1])]
+    left = final.jacobian, final.residual, problem.stretches
+    by_matrix = deviations(*left, own, kept)
+    resampled = bootstrap(final.jacobian[:, own], final.residual, problem.stretches)
+    found = {named[place]: (by_matrix[i], resampled[i]) for i, place in enumerate(places)}
+    partners = {pair.second: pair.first for pair in told.pairs}
+    partners |= {pair.first: pair.second for pair in told.pairs if pair.first not in partners}
+    rows = []
+    for place, name in enumerate(named):
+        is_current = name not in problem.free
+        scale = problem.speed if is_current else craft.parameters[name]
+        old = 0.0 if is_current else scale
+        deviation, drawn = found.get(name, (told.kept.get(name, 0.0), 0.0))
+        rows.append(
+            Row(
+                name,
+                "m/s" if is_current else craft.unit(name),
+                old,
+                old + scale * float(final.unknowns[place]),
+                abs(scale) * float(deviation),
+                abs(scale) * float(drawn),
+                name in told.told,
+                partners.get(name, ""),
+                is_current,
+            )
+        )
+    return tuple(rows)
+
+
+def _notes(problem: Problem, final: Solution, told: Told) -> list[str]:
+    """Return what is said of unknowns that are kept, and of pairs that are hardly told apart."""
+    own = set(problem.free)
+    scales = dict.fromkeys(problem.named, problem.speed) | problem.craft.parameters
+    found, changes = [], dict(zip(problem.named, final.unknowns, strict=False))
+    paired = {pair.second for pair in told.pairs}
+    for name in told.kept:
+        if name not in paired:
+            kept = "keeps the file's value" if name in own else "is taken as 0"
+            found.append(f"{name} is not shown by these manoeuvres and {kept}")
+    for pair in told.pairs:
+        first, second = scales[pair.first], scales[pair.second]
+        ratio = pair.ratio * first / second
+        value = sum(
+            factor * scales[name] * (changes[name] + (name in own))
+            for name, factor in ((pair.first, 1.0), (pair.second, -ratio))
+        )
+        sign = "-" if ratio > 0.0 else "+"
+        half = WITHIN * pair.deviation * abs(first)
+        kept = f"; {pair.second} keeps the file's value" if pair.second in told.kept else ""
+        found.append(
+            f"{pair.first} and {pair.second} are hardly told apart (correlation "
+            f"{pair.correlation:.3f}): {pair.first} {sign} {number(abs(ratio), 3)} {pair.second} = "
+            f"{number(value, 4)} +- {number(half, 2)} can be had{kept}"
+        )
+    return found
+
+
+def _verdicts(craft: Craft, rows: Sequence[Row], shown: Sequence[Shown]) -> list[Verdict]:
+    """Return the rules: values that the craft accepts, and passes that the model follows."""
+    outside = [
+        f"{row.name} {number(row.value, 4)}, {number(low, 4)} to {number(high, 4)} is allowed"
+        for row in rows
+        if row.told and not row.is_current
+        for low, high in [craft.limits(row.name)]
+        if not low <= row.value <= high
+    ]
+    fits = {each.run.name: each.fit for each in shown}
+    return [
+        Verdict("the values are those of a craft", not outside, "; ".join(outside) or "in range"),
+        Verdict(
+            "the model follows the logs",
+            min(fits.values()) > LEAST_FIT,
+            f"{', '.join(f'{name} {100.0 * value:.1f} %' for name, value in fits.items())}, above "
+            f"{100.0 * LEAST_FIT:g} % is needed",
+        ),
+    ]
