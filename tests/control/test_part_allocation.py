@@ -300,5 +300,5 @@ def test_one_helm_turns_at_the_rate_of_the_first_and_uneven_thrusts_help():
 
 
 def test_one_helm_without_an_angle_is_refused():
-    with pytest.raises(InputError, match="propulsor_turns_with_2 is 1.0: .* no angle of its own"):
+    with pytest.raises(InputError, match=r"propulsor_turns_with_2 is 1\.0: .* no angle of its own"):
         allocated({**HELM, "propulsor_angle_limit_1": [0, 0]})

@@ -64,27 +64,31 @@ def test_his_glide_at_25_degrees_has_his_ballast_and_place_of_the_battery():
     assert math.degrees(theta) == pytest.approx(-22.98, abs=0.01)
 
 
-def test_glides_of_the_variant_flight_are_those_of_gliderflight():
+def rows():
+    """Return the steady glides of gliderflight; below the names stands a row of units."""
     with (DATA / "glider_steady.csv").open() as file:
-        _units, *rows = csv.DictReader(file)
-    for row in rows:
-        pitch, volume, u, w = (float(row[name]) for name in ("pitch", "volume", "u", "w"))
-        theta = math.radians(pitch)
-        craft = glider("flight", gravity=9.81, buoyancy=50 * 9.81)
+        _units, *found = csv.DictReader(file)
+    return [{name: float(value) for name, value in row.items()} for row in found]
 
-        def slope(x, craft=craft, net=-volume * 1e-6 * RHO):
-            craft.set("ballast_order", orders(net, x[3])["ballast_order"])
-            state = np.zeros(44)
-            state[2], state[4], state[6], state[8] = 300, x[0], x[1], x[2]
-            state[36:39] = craft.get("ballast_order")[:3]
-            return craft.derivatives(state)
 
-        # At the speed of the tool nothing accelerates but the pitch, which a place of the battery stops.
-        speed, path = math.hypot(u, w), math.atan2(w, u)
-        alpha = theta - path
-        at = theta, speed * math.cos(alpha), speed * math.sin(alpha)
-        ahead = brentq(lambda place: slope((*at, place))[10], -0.05, 0.05)
-        np.testing.assert_allclose(slope((*at, ahead))[6:12], 0, atol=2e-6)
+@pytest.mark.parametrize("row", rows(), ids=lambda row: f"{row['pitch']:g} deg")
+def test_glides_of_the_variant_flight_are_those_of_gliderflight(row):
+    craft = glider("flight", gravity=9.81, buoyancy=50 * 9.81)
+    theta, path = math.radians(row["pitch"]), math.atan2(row["w"], row["u"])
+    assert path - theta == pytest.approx(row["alpha"], abs=1e-9)
+    x = np.zeros(12 + 4 * 8)
+    x[2], x[4] = 300, theta
+    x[6], x[8] = row["U"] * math.cos(theta - path), row["U"] * math.sin(theta - path)
+
+    def slope(ahead):
+        """Return the derivatives with the battery there, the ballast where its order is."""
+        x[36:] = orders(-row["volume"] * 1e-6 * RHO, ahead)["ballast_order"]
+        craft.set("ballast_order", x[36:])
+        return craft.derivatives(x)[6:12]
+
+    # Some place of the battery stops the pitch: then nothing else accelerates either.
+    still = slope(brentq(lambda ahead: slope(ahead)[4], -0.05, 0.05))
+    np.testing.assert_allclose(still, 0, atol=1e-8)
 
 
 @pytest.mark.parametrize("way", [-1, 1])

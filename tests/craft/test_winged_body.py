@@ -33,10 +33,14 @@ def load(nu, terms="winged-body", **values):
 def turned(angle, axis):
     """Return the matrix that turns vectors by an angle about axis 1 or 2."""
     c, s = math.cos(angle), math.sin(angle)
-    return np.array({1: [[c, 0, s], [0, 1, 0], [-s, 0, c]], 2: [[c, -s, 0], [s, c, 0], [0, 0, 1]]}[axis])
+    return np.array(
+        {1: [[c, 0, s], [0, 1, 0], [-s, 0, c]], 2: [[c, -s, 0], [s, c, 0], [0, 0, 1]]}[axis]
+    )
 
 
-@pytest.mark.parametrize("v", [(0.4, 0.0, 0.03), (0.4, -0.1, 0.05), (0.3, 0.2, -0.2), (0.0, 0.0, 0.0)])
+@pytest.mark.parametrize(
+    "v", [(0.4, 0.0, 0.03), (0.4, -0.1, 0.05), (0.3, 0.2, -0.2), (0.0, 0.0, 0.0)]
+)
 def test_force_and_moment_are_those_of_the_flow_frame(v):
     rates = np.array([0.05, -0.1, 0.08])
     speed = math.hypot(*v)

@@ -38,9 +38,9 @@ class GlideControl(PitchHold):
     `PitchHold` says: of a glider that is not armed all rest in the middle.
 
     Depths m, positive down; pitch rad, bow up; yaw moment N.m, positive to starboard.
-    ``buoyancy_order`` 1 is the most volume, ``mass_order`` 1 the mass furthest ahead, ``roll_order``
-    1 furthest to starboard. ``engaged``, ``direct`` and ``depth_wanted`` are those of `Guidance`; its
-    speeds are not followed.
+    ``buoyancy_order`` 1 is the most volume, ``mass_order`` 1 the mass furthest ahead,
+    ``roll_order`` 1 furthest to starboard. ``engaged``, ``direct`` and ``depth_wanted`` are those
+    of `Guidance`; its speeds are not followed.
 
     Not modelled: a turn ahead of the depth, by as much as the pump takes; trim of the ballast by
     the rate of change of the depth.
@@ -112,4 +112,5 @@ class GlideControl(PitchHold):
         return bool(self._dived or self.depth <= self.climb_to)
 
     def _for_depth(self) -> float:
-        return -self.glide_pitch if self._dives() else self.glide_pitch
+        pitch: float = self.glide_pitch
+        return -pitch if self._dives() else pitch

@@ -63,9 +63,9 @@ class PartAllocation(AllocatedParts, Sampled):
     Not modelled: moments of shafts, flow that a part meets from another, stall.
 
     Raises InputError at the start for an axis that is no unit vector, or is not horizontal where
-    it turns, for angles out of order or shared otherwise than `require_steering` says, for a propeller or jet without ``propulsor_thrust``, for a
-    linear-fin without ``foil_lift``, for ``axes`` that name none though there are parts, and for
-    one that the parts cannot give, or only together with another one.
+    it turns, for angles out of order or shared with no angle, for a propeller or jet without
+    ``propulsor_thrust``, for a linear-fin without ``foil_lift``, for ``axes`` that name none though
+    there are parts, and for one that the parts cannot give, or only together with another one.
     """
 
     exercised: ClassVar = {

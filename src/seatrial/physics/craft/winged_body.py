@@ -42,13 +42,13 @@ def winged_body(c: Context) -> Any:
         force   R (-(K_D0 + K_D alpha^2), K_beta beta, -(K_L0 + K_L alpha)) V^2
         moment  R (K_MR beta + K_p p, K_M0 + K_M alpha + K_q q, K_MY beta + K_r r) V^2
 
-    alpha = atan2(w, u), beta = asin(v / V), V^2 = u^2 + v^2 + w^2, and p, q, r, all of nu_r (Graver,
-    Underwater Gliders: Dynamics, Control and Design, Princeton, 2005; Zhang et al., Ocean
-    Engineering 60, 2013). A V^2 of the literature is of one density: the coefficients have it.
+    alpha = atan2(w, u), beta = asin(v / V), V^2 = u^2 + v^2 + w^2, and p, q, r, all of nu_r
+    (Graver, Underwater Gliders: Dynamics, Control and Design, Princeton, 2005; Zhang et al., Ocean
+    Engineering 60, 2013). The coefficients contain the density of the water.
 
-    Limits: made for small alpha and beta ahead, without stall; moments at rest are 0. Munk's moments
-    are those of ``coriolis``, and not of K_M and K_MY. Of a hull that floats, the share under water
-    is met.
+    Limits: made for small alpha and beta ahead, without stall; no damping at rest. Munk's moments
+    are those of ``coriolis``, and not of K_M and K_MY. Of a hull that floats, the share under
+    water is met.
     """
     p, (u, v, w) = c.parameters, ca.vertsplit(c.nu_r[:3])
     across = ca.sqrt(u**2 + w**2 + _STILL**2)
