@@ -267,3 +267,38 @@ def test_an_axis_that_comes_only_with_another_is_refused():
 def test_no_parts_and_no_axes_ask_for_nothing():
     found = started(PartAllocation, surge=5.0)
     assert found.get("propulsor_order") == [0.0] * 8
+
+
+# ---------------------------------------------------------------------- one steering angle
+
+HELM = slots(
+    [
+        ("outboard", {"position": [-2.4, y, 0], "thrust": [250, 100], **own})
+        for y, own in ((-1.0, {"angle_limit": [-0.7, 0.7]}), (1.0, {"turns_with": 1}))
+    ],
+    axes="surge yaw",
+)
+
+
+@given(st.floats(-80, 200), st.floats(-60, 60))
+def test_two_outboards_on_one_helm_give_surge_and_yaw_at_one_angle(surge, yaw):
+    allocation = allocated(HELM, surge=surge, yaw_moment=yaw)
+    near(wrench(allocation)[[SURGE, YAW]], [surge, yaw], 1e3)
+    one, two = allocation.get("propulsor_angle")[:2]
+    assert one == two
+    assert -0.7 <= one <= 0.7
+
+
+def test_one_helm_turns_at_the_rate_of_the_first_and_uneven_thrusts_help():
+    slow = {**HELM, "propulsor_angle_rate_1": 0.2}
+    allocation = allocated(slow, surge=100.0, yaw_moment=100.0)
+    one, two = allocation.get("propulsor_angle")[:2]
+    assert one == two == pytest.approx(-0.2 * 0.05)
+    near(wrench(allocation)[[SURGE, YAW]], [100.0, 100.0], 1e3)
+    port, starboard = allocation.get("propulsor_order")[:2]
+    assert port > starboard
+
+
+def test_one_helm_without_an_angle_is_refused():
+    with pytest.raises(InputError, match=r"propulsor_turns_with_2 is 1\.0: .* no angle of its own"):
+        allocated({**HELM, "propulsor_angle_limit_1": [0, 0]})

@@ -53,7 +53,7 @@ def test_terms_act_alone_and_their_loads_add_up(kind):
     case["values"].update(drag_coefficient=range(1, 10), projected_area=(0.1, 0.2, 0.3))
     case["values"].update(lift_arm=0.5, wave_damping=500, wave_depth=10)
     case["values"].update(fading_damping_force=(30, 40), fading_damping_rate=0.5)
-    case["values"].update(body_lift_area=1, body_lift_span=1)
+    case["values"].update(body_lift_area=1, body_lift_span=1, wing_drag=(20, 30), wing_side=-10)
     bare = slope([])
     alone = [slope([name]) - bare for name in TERMS if name not in (WAVES, WIND)]
     assert all(np.abs(each[6:]).max() > 0.01 for each in alone)

@@ -32,7 +32,7 @@ class Helm(Component):
 
     engaged = Input("1", "which autopilots act", type=bool, axes=("speed", "heading", "depth"))
     direct = Input("1", "manual control, -1 to 1", axes=("surge", "sway", "yaw", "heave"))
-    surge_held = Input("N", "surge force of the autopilot, positive ahead")
+    surge_held = Input("N", "surge force of the autopilot, positive ahead", optional=True)
     yaw_moment_held = Input("N.m", "yaw moment of the autopilot, positive to starboard")
     heave_held = Input("N", "heave force of the autopilot, positive down", optional=True)
 

@@ -10,6 +10,7 @@ from ...errors import InputError
 from ...model.component import Parameter
 from ...physics.parts.lift import lift_slope
 from ...physics.parts.slots import COUNT, FOILS, PROPULSORS, FoilSlots, PropulsorSlots, read_kinds
+from ...physics.parts.steering import require_steering
 from .bounded import Array
 from .part_wrenches import AXES, capacities, given_alone, lift_wrench, read_axes, thrust_wrench
 
@@ -37,11 +38,18 @@ class AllocatedParts(PropulsorSlots, FoilSlots):
     def read_parts(self) -> None:
         """Work out what each part gives; raises InputError for parts and axes that do not fit."""
         self._kinds = read_kinds(self.propulsors, "propulsor", PROPULSORS)
+        count = len(self._kinds)
+        self._leaders = require_steering(
+            self.name, self.propulsor_turns_with[:count], self.propulsor_angle_limit[:count]
+        )
         self._check_propulsors()
         thrusts = self.propulsor_thrust
         used = [number for number in range(len(self._kinds)) if max(thrusts[number]) > 0.0]
         self._turning = [number for number in used if self._turns(number)]
         self._fixed = [number for number in used if number not in self._turning]
+        led_by = [self._leaders[number] for number in self._turning]
+        self._helms = sorted(set(led_by))
+        self._on_helm = [[i for i, one in enumerate(led_by) if one == h] for h in self._helms]
         self._foil_kinds = read_kinds(self.foils, "foil", FOILS)
         self._foils = [n for n, kind in enumerate(self._foil_kinds) if kind in STEERING]
         self._check_linear_fins()
@@ -120,14 +128,14 @@ class AllocatedParts(PropulsorSlots, FoilSlots):
                 )
 
     def _turns(self, number: int) -> bool:
-        """Return whether a propulsor turns."""
-        least, most = self.propulsor_angle_limit[number]
+        """Return whether a propulsor turns, by itself or with another one."""
+        least, most = self.propulsor_angle_limit[self._leaders[number]]
         return self._kinds[number] in TURNING and bool(least < most)
 
     def _at_rest(self, number: int) -> float:
         """Return the angle of a propulsor at the start: the one of its range nearest to 0."""
         turns = number < len(self._kinds) and self._kinds[number] in TURNING
-        least, most = self._ranges[number]
+        least, most = self._ranges[self._leaders[number] if turns else number]
         return float(min(max(0.0, least), most)) if turns else 0.0
 
     def _thrust(self, number: int, angle: float) -> Array:

@@ -13,7 +13,7 @@ from ...physics.parts.slots import COUNT
 from .allocated_parts import AllocatedParts
 from .extended_thrust import Demand, Shares, shares_of
 from .part_wrenches import capacities
-from .steering import Turning, angles_for, with_directions
+from .steering import Turning, angles_for, as_one, with_directions
 
 _PRIORITIES = np.array([1.0, 1.0, 30.0, 27e3, 27e3, 900.0])
 """Weights of the axes, each as a share of the largest force or moment there."""
@@ -47,7 +47,8 @@ class PartAllocation(AllocatedParts, Sampled):
     is taken where the thrust astern is enough. They turn there at ``propulsor_angle_rate``, the
     nearest way in their range, and the thrusts of all parts are those for the angles of this
     instant, so that what is asked is given on the way too, as far as it goes. One that has less
-    than ``idle_share`` to give keeps its angle.
+    than ``idle_share`` to give keeps its angle. Those that ``propulsor_turns_with`` another find it
+    as one propulsor of all their thrust; at that angle each has a thrust of its own.
 
     **Foils** give rho/2 u^2 A C_L' delta each, u = ``speed`` ahead through the water, C_L' of
     their aspect ratio (`lift_slope`), or ``foil_lift`` of a linear-fin, their direction that of
@@ -62,9 +63,9 @@ class PartAllocation(AllocatedParts, Sampled):
     Not modelled: moments of shafts, flow that a part meets from another, stall.
 
     Raises InputError at the start for an axis that is no unit vector, or is not horizontal where
-    it turns, for angles out of order, for a propeller or jet without ``propulsor_thrust``, for a
-    linear-fin without ``foil_lift``, for ``axes`` that name none though there are parts, and for
-    one that the parts cannot give, or only together with another one.
+    it turns, for angles out of order or shared with no angle, for a propeller or jet without
+    ``propulsor_thrust``, for a linear-fin without ``foil_lift``, for ``axes`` that name none though
+    there are parts, and for one that the parts cannot give, or only together with another one.
     """
 
     exercised: ClassVar = {
@@ -139,11 +140,10 @@ class PartAllocation(AllocatedParts, Sampled):
             return
         others, turning = self._others(), self._those_that_turn()
         demand = self._demanded(others)
-        now = [self._angles[number] for number in self._turning]
-        goals = angles_for(demand, others, turning, now, self.idle_share)
-        angles = list(self._angles)
-        for number, goal in zip(self._turning, goals, strict=True):
-            angles[number] = self._moved(number, goal)
+        now = [self._angles[helm] for helm in self._helms]
+        on_helms = [as_one([turning[i] for i in places]) for places in self._on_helm]
+        goals = angles_for(demand, others, on_helms, now, self.idle_share)
+        angles = self._steered(dict(zip(self._helms, goals, strict=True)))
         reached = [angles[number] for number in self._turning]
         self._order(shares_of(demand, with_directions(others, turning, reached)).tolist())
         self.propulsor_angle = angles
@@ -174,7 +174,8 @@ class PartAllocation(AllocatedParts, Sampled):
         along, abeam = np.array(self._along), np.array(self._abeam)
         found = []
         for i, number in enumerate(self._turning):
-            (least, most), (astern, ahead) = self._ranges[number], self._reaches[number]
+            least, most = self._ranges[self._leaders[number]]
+            astern, ahead = self._reaches[number]
             found.append(Turning(along[:, i], abeam[:, i], least, most, astern, ahead))
         return found
 
@@ -182,6 +183,14 @@ class PartAllocation(AllocatedParts, Sampled):
         """Return the share of a propulsor's thrust that the speed leaves."""
         gone = self._fading[number]
         return 1.0 - min(1.0, (self.speed / gone) ** 2) if gone > 0.0 else 1.0
+
+    def _steered(self, goals: dict[int, float]) -> list[float]:
+        """Return the angles of all propulsors after the move of this instant to those of helms."""
+        moved = {helm: self._moved(helm, goal) for helm, goal in goals.items()}
+        angles = list(self._angles)
+        for number, helm in enumerate(self._leaders):
+            angles[number] = moved.get(helm, angles[number])
+        return angles
 
     def _moved(self, number: int, goal: float) -> float:
         """Return the angle of a propulsor after the move of this instant."""

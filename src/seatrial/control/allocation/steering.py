@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -26,6 +27,16 @@ class Turning(NamedTuple):
     astern: float
     ahead: float
     """Largest shares, both positive."""
+
+
+def as_one(parts: Sequence[Turning]) -> Turning:
+    """Return propulsors on one steering angle as one that turns, with the same share for each."""
+    return parts[0]._replace(
+        along=np.sum([part.along for part in parts], axis=0),
+        abeam=np.sum([part.abeam for part in parts], axis=0),
+        astern=min(part.astern for part in parts),
+        ahead=min(part.ahead for part in parts),
+    )
 
 
 def fitting(direction: float, least: float, most: float, now: float) -> float | None:

@@ -27,6 +27,7 @@ from .hull_lift import hull_lift
 from .hull_points import floating, point_drag, wave_making, wet
 from .morison import morison
 from .slender import body_lift, fading_damping
+from .winged_body import winged_body
 
 Term = Callable[[Context], Any]
 
@@ -192,6 +193,7 @@ TERMS: dict[str, Term] = {
     "point-drag": point_drag,
     "hull-lift": hull_lift,
     "body-lift": body_lift,
+    "winged-body": winged_body,
     "fading-damping": fading_damping,
     "wave-making": wave_making,
     WAVES: wave_loads,

@@ -30,6 +30,7 @@ from .seaway import Places, Seaway
 from .slender import Slender
 from .symbolic import euler_rate_matrix, rotation_matrix, skew
 from .through_water import ThroughWater, flow_outputs
+from .winged_body import WingedBody
 
 _NED = ("north", "east", "down")
 _TENSOR = ("xx", "yy", "zz", "xy", "xz", "yz")
@@ -46,7 +47,9 @@ _INERTIAS = (
 )
 
 
-class SixDofCraft(ThroughWater, CoupledDamping, HullPoints, HullLift, Morison, Slender, Seaway):
+class SixDofCraft(
+    ThroughWater, CoupledDamping, HullPoints, HullLift, Morison, Slender, WingedBody, Seaway
+):
     """Base of craft in six degrees of freedom: M nu_r' = tau + the terms of `hydrodynamics`.
 
     nu_r is nu less the velocity of the water in body axes. ``terms`` names the terms that act;

@@ -10,6 +10,7 @@ from typing import Any
 
 from ...errors import InputError
 from .coefficients import Coefficients, Part, fitted
+from .steering import require_steering
 from .wageningen import AREA_RATIOS, BLADES, PITCH_RATIOS
 
 _LAWS = ("thruster", "azimuth", "outboard", "tunnel", "jet")
@@ -24,6 +25,8 @@ def require_parts(craft: Coefficients) -> None:
     for sort, check in checks.items():
         for number, part in enumerate(fitted(values, sort), 1):
             check(part, partial(_refused, craft.name, sort, number, part), values)
+    slots = [part.slot for part in fitted(values, "propulsor")]
+    require_steering(craft.name, [s.turns_with for s in slots], [s.angle_limit for s in slots])
 
 
 def _refused(craft: str, sort: str, number: int, part: Part, name: str, allowed: str) -> InputError:

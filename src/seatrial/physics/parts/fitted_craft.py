@@ -21,7 +21,7 @@ from .coefficients import SORTS, Coefficients, fitted
 from .foils import foil_load
 from .lags import angle_lag, ballast_lag, foil_lag, follow, order_lag
 from .orbital import PARTS_PORTS, AtParts, part_positions, with_waves
-from .propulsors import pushes
+from .propulsors import pushes, steered
 from .screws import ADVANCES
 from .slots import BALLASTS, COUNT, FOILS, PROPULSORS
 
@@ -39,7 +39,8 @@ class FittedCraft(Coefficients, MarineCraft):
     x to y. An order is a share, held to -1 to 1: of the largest thrust (thruster, azimuth,
     outboard, tunnel, jet) or shaft speed (propeller, wageningen-b, four-quadrant), where
     ``propulsor_thrust_k`` is not read. It is limited before it lags. An angle range of a full turn
-    or more is endless, from -1e9 to 1e9 say: it turns the shortest way and counts its turns.
+    or more is endless, from -1e9 to 1e9 say: it turns the shortest way and counts its turns. One
+    that ``propulsor_turns_with`` another has that one's angle.
     **Foils** (`fins`, `rudder`, `sail`) have positive angles as there. **Ballast** (`ballast`)
     changes mass, CG, inertia and buoyancy as it fills or moves; `mass_matrix` is that without it.
 
@@ -148,13 +149,14 @@ class FittedCraft(Coefficients, MarineCraft):
         propulsors, foils = with_waves(propulsors, 0, u), with_waves(foils, 1, u)
         order = follow([order_lag(each) for each in propulsors], u.propulsor_order, x.lagged_order)
         angle = follow([angle_lag(each) for each in propulsors], u.propulsor_angle, x.lagged_angle)
+        angles = steered(propulsors, angle.values)
         foil = follow([foil_lag(each) for each in foils], u.foil_angle, x.lagged_foil)
         filled = follow([ballast_lag(each) for each in ballasts], u.ballast_order, x.lagged_ballast)
         masses = points(ballasts, filled.values)
         p = ballasted(p, masses, volumes(ballasts, filled.values))
         nu = ca.vertcat(x.velocity, x.rates)
         c = craft_context(x.position, x.attitude, nu, u, p)
-        pushed = pushes(c, propulsors, order.values, angle.values)
+        pushed = pushes(c, propulsors, order.values, angles)
         load = sum((push.load for push in pushed), foil_load(c, foils, foil.values, pushed))
         if p.restoring.startswith("surface"):
             load += surface_weight(c, masses)
@@ -170,7 +172,7 @@ class FittedCraft(Coefficients, MarineCraft):
             **outputs,
             "propulsor_force": _padded([push.force for push in pushed]),
             "propulsor_rate": _padded([push.rate for push in pushed]),
-            "propulsor_turned": _padded(angle.values),
+            "propulsor_turned": _padded(angles),
             "propulsor_power": _padded([push.power for push in pushed]),
             "foil_turned": _padded(foil.values),
             "ballast_share": _padded(filled.values),

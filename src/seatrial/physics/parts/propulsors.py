@@ -35,6 +35,17 @@ def pushes(
     ]
 
 
+def steered(parts: Sequence[Part], angles: Sequence[Any]) -> list[Any]:
+    """Return the angles, rad, that propulsors have: that of number ``turns_with``, or their own."""
+    found = []
+    for part, own in zip(parts, angles, strict=True):
+        angle = own
+        for number, other in enumerate(angles, 1):
+            angle = ca.if_else(ca.eq(part.slot.turns_with, number), other, angle)
+        found.append(angle)
+    return found
+
+
 def _turned(axis: Any, angle: Any) -> Any:
     """Return ``axis`` turned about z by ``angle``, from x to y."""
     x, y, z = ca.vertsplit(axis)

@@ -79,7 +79,9 @@ class PropulsorSlots(Component):
     """Mix-in: parameters of up to 8 propulsors.
 
     An order is a share of the largest thrust or shaft speed, -1 to 1. A propulsor pushes along its
-    ``propulsor_axis``, turned by its angle about z, from x to y, if it can turn.
+    ``propulsor_axis``, turned by its angle about z, from x to y, if it can turn. Propulsors on one
+    helm have one angle: ``propulsor_turns_with`` is the number of the one whose order, range, rate
+    and lag they share.
     """
 
     propulsors = Parameter(
@@ -127,6 +129,9 @@ class PropulsorSlots(Component):
     )  # fmt: skip
     propulsor_angle_rate = _p(0.0, "rad/s", "largest rate of the angle; 0: no limit", min=0.0)
     propulsor_angle_time_constant = _p(0.0, "s", "lag of the angle, 0 for none", min=0.0)
+    propulsor_turns_with = _p(
+        0.0, "1", "number of the propulsor whose angle it has, 0 for one of its own", min=0.0
+    )
 
 
 class FoilSlots(Component):
