@@ -75,7 +75,7 @@ class Log:
 
 
 class Samples:
-    """Values as they come, message by message, to be made channels; see `told_apart`."""
+    """Values as they come, message by message, to be made channels; see `distinguished`."""
 
     def __init__(self) -> None:
         self._entries: dict[tuple[str, str], tuple[str | None, list[tuple[float, float, int]]]] = {}
@@ -88,7 +88,7 @@ class Samples:
 
     def channels(self) -> dict[str, Channel]:
         """Return the channels by name, in the order in which they began."""
-        return told_apart(
+        return distinguished(
             {
                 (name, source): channel(name, unit, *zip(*entries, strict=True))
                 for (name, source), (unit, entries) in self._entries.items()
@@ -96,7 +96,7 @@ class Samples:
         )
 
 
-def told_apart(
+def distinguished(
     found: Mapping[tuple[str, str], Channel], first: str | None = None
 ) -> dict[str, Channel]:
     """Return channels, by name and source, by a name that is theirs alone.

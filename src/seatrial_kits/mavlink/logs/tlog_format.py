@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from seatrial.errors import InputError
-from seatrial.trial.logs.channels import Array, Channel, Log, channel, told_apart
+from seatrial.trial.logs.channels import Array, Channel, Log, channel, distinguished
 from seatrial.trial.logs.clock_times import date_of
 from seatrial.trial.logs.formats import Format
 from seatrial.trial.logs.quantities import Column
@@ -73,7 +73,7 @@ def _read(path: Path, _: Column | None) -> Log:
             found |= _channels(kind, sender, fixed, _times(fixed, delays[sender], begun))
         else:
             found |= _channels(kind, sender, frames, _times(frames, delays[sender], begun))
-    channels = told_apart(found, _autopilot(kinds))
+    channels = distinguished(found, _autopilot(kinds))
     channels |= _derived(channels, parameters)
     notes = tuple(f"{count} {what}" for what, count in skipped.items() if count)
     return Log(path, channels, start=date_of(begun / 1e6), notes=notes)
