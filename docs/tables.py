@@ -25,6 +25,7 @@ from parts import (  # noqa: E402, F401  each registers its parts
     faults,
     hydrone,
     hydrone_deck,
+    logs,
     mavlink,
     native,
     nmea0183,

@@ -65,7 +65,7 @@ class _Messages:
     rows: NDArray[np.int64]
     """Byte of the file that each begins at, or its number."""
     instance: str | None
-    """Column that tells several sensors apart."""
+    """Column that distinguishes several sensors."""
 
     @property
     def seconds(self) -> NDArray[np.float64] | None:

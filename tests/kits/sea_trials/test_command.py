@@ -68,6 +68,37 @@ def test_figures_of_a_run_and_of_a_log_beside_it(run, tmp_path):
     assert result["compared"]["missing"]["steady_diameter"].endswith("540 deg are needed")
 
 
+def test_a_part_of_a_log(tmp_path):
+    """Figures are those of the whole, of a log that goes on; times are those of the log."""
+    done = figures(str(FOLDER / f"{TURN}.csv"), "--manoeuvre", "turning-circle", "--columns", NAMES,
+                   "--to", "500 s", "--json", cwd=tmp_path)  # fmt: skip
+    found = json.loads(done.stdout)["result"]["figures"]
+    assert found["advance"]["value"] / 320.0 == pytest.approx(
+        FIGURES[TURN]["figures"]["advance"], abs=1e-3
+    )
+    assert "steady_diameter" not in found
+
+
+def test_without_a_helm_the_order_is_a_note(tmp_path):
+    names = NAMES.replace(",helm=delta", "")
+    path = str(FOLDER / f"{TURN}.csv")
+    notes = []
+    for order in ([], ["--order", "0 s"]):
+        done = figures(
+            path,
+            "--manoeuvre",
+            "turning-circle",
+            "--columns",
+            names,
+            *order,
+            "--json",
+            cwd=tmp_path,
+        )
+        notes.append(json.loads(done.stdout)["notes"])
+    assert notes[0][0].startswith("no helm is read: the order is taken to be given at 0 s")
+    assert notes[1] == []
+
+
 def test_a_run_needs_no_manoeuvre(run, tmp_path):
     done = figures(str(run), "--manoeuvre", "zig-zag", cwd=tmp_path)
     assert done.returncode == 2
@@ -84,6 +115,9 @@ def test_a_run_needs_no_manoeuvre(run, tmp_path):
         (["--manoeuvre", "turning-circle", "--criteria", "imo"], "--length"),
         (["--manoeuvre", "turning-circle", "--length", "0 m"], "a length above 0"),
         (["--manoeuvre", "turning-circle", "--length", "3 s"], "--length: "),
+        (["--manoeuvre", "turning-circle", "--from", "3 m"], "--from: "),
+        (["--manoeuvre", "turning-circle", "--from", "5000 s"], ": no value from 5000 s"),
+        (["--manoeuvre", "turning-circle", "--format", "tlog"], "time: MAVLink telemetry log has"),
     ],
 )
 def test_bad_options_are_refused(tmp_path, arguments, message):

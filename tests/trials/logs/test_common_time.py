@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from seatrial.errors import InputError
-from seatrial.trial.logs.channels import Log, Samples, channel
+from seatrial.trial.logs.channels import Log, Samples, channel, distinguished
 from seatrial.trial.logs.common_time import together
 from seatrial.trial.logs.motion import motion
 from seatrial.trial.logs.quantities import Column, chosen
@@ -172,10 +172,11 @@ def test_a_minus_turns_the_sign():
     ]
 
 
-def test_two_sources_of_one_channel_are_told_apart():
+def test_two_sources_of_one_channel_are_distinguished():
     samples = Samples()
     for source, value in (("GP", 1.0), ("GN", 2.0), ("GP", 3.0)):
         samples.add("GGA.lat", "deg", value, value, 1, source)
     assert {name: each.values.tolist() for name, each in samples.channels().items()} == {
         "GGA.lat": [1.0, 3.0], "GN/GGA.lat": [2.0]}  # fmt: skip
-    assert list(samples.channels("GN")) == ["GP/GGA.lat", "GGA.lat"]
+    first, second = channel("a", "m", [0.0], [1.0]), channel("a", "m", [0.0], [2.0])
+    assert list(distinguished({("a", "1"): first, ("a", "2"): second}, "2")) == ["1/a", "a"]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from datetime import datetime
 from pathlib import Path
 
@@ -75,11 +75,7 @@ class Log:
 
 
 class Samples:
-    """Values as they come, message by message, to be made channels.
-
-    Several sources may send the same channel: two compasses, two vessels. That of the first source
-    keeps its plain name; the others have the source before theirs, ``SOURCE/NAME``.
-    """
+    """Values as they come, message by message, to be made channels; see `distinguished`."""
 
     def __init__(self) -> None:
         self._entries: dict[tuple[str, str], tuple[str | None, list[tuple[float, float, int]]]] = {}
@@ -90,19 +86,33 @@ class Samples:
         """Add a value of a channel; see `Channel`."""
         self._entries.setdefault((name, source), (unit, []))[1].append((time, value, row))
 
-    def channels(self, first: str | None = None) -> dict[str, Channel]:
-        """Return the channels by name, in the order in which they began.
+    def channels(self) -> dict[str, Channel]:
+        """Return the channels by name, in the order in which they began."""
+        return distinguished(
+            {
+                (name, source): channel(name, unit, *zip(*entries, strict=True))
+                for (name, source), (unit, entries) in self._entries.items()
+            }
+        )
 
-        ``first`` is the source that keeps plain names, whichever came before it.
-        """
-        plain = dict(reversed(self._entries))
-        plain |= {name: source for name, source in self._entries if source == first}
-        found = {}
-        for (name, source), (unit, entries) in self._entries.items():
-            shown = name if plain[name] == source else f"{source}/{name}"
-            time, values, rows = zip(*entries, strict=True)
-            found[shown] = channel(shown, unit, time, values, rows)
-        return found
+
+def distinguished(
+    found: Mapping[tuple[str, str], Channel], first: str | None = None
+) -> dict[str, Channel]:
+    """Return channels, by name and source, by a name that is theirs alone.
+
+    Several sources may send the same channel: two compasses, two vessels. That of the source
+    ``first``, or of the first that is found, keeps its plain name; the others have the source
+    before theirs, ``SOURCE/NAME``.
+    """
+    plain = dict(reversed(list(found))) | {
+        name: source for name, source in found if source == first
+    }
+    shown = {
+        (name, source): name if plain[name] == source else f"{source}/{name}"
+        for name, source in found
+    }
+    return {shown[key]: replace(each, name=shown[key]) for key, each in found.items()}
 
 
 def channel(

@@ -118,9 +118,9 @@ def _within(each: Series, window: Window) -> Series:
         return each
     inside = np.flatnonzero((each.time >= window[0]) & (each.time <= window[1]))
     if not len(inside):
-        raise InputError(
-            f"{each.log.path}: {_span(each)}: no value from {window[0]:g} s to {window[1]:g} s"
-        )
+        ends = zip(("from", "to"), window, strict=True)
+        asked = " ".join(f"{word} {end:g} s" for word, end in ends if math.isfinite(end))
+        raise InputError(f"{each.log.path}: {_span(each)}: no value {asked}")
     return each.at(slice(max(int(inside[0]) - 1, 0), int(inside[-1]) + 2))
 
 

@@ -105,7 +105,7 @@ def test_what_is_invalid_is_left_out_with_a_count(read):
     assert found.channels["RMC.lat"].rows.tolist() == [1]
 
 
-def test_two_receivers_are_told_apart(read):
+def test_two_receivers_are_distinguished(read):
     found = read(rmc("120000"), rmc("120000", talker="GN"), rmc("120001"))
     assert len(found.channels["RMC.lat"].values) == 2
     assert len(found.channels["GN/RMC.lat"].values) == 1
