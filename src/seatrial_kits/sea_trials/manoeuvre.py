@@ -36,7 +36,7 @@ _HEADING = math.radians(1.0)
 """Change of the mean heading within which the approach is straight, rad."""
 _DEPTH = 0.05
 """Change of the mean depth within which it is steady, m."""
-_FOUND = 0.01
+_FOUND = 0.005
 """Change of the mean helm, and error of the mean rate, shares, within which a helm is found."""
 _SPEED_SHARE, _RATE_SHARE = 0.01, 0.02
 _ASTERN = -0.5
