@@ -244,7 +244,7 @@ class Manoeuvre(HelmForRate, Sampled):
 
     def _descent(self) -> float:
         """Return the manual dive that leads to the depth of the approach."""
-        if self._number or not self._is_deep():
+        if self._number or not self._is_deep() or self.kind in MODES:
             return 0.0
         deeper: float = self.depth_start - self.depth
         return min(max(deeper, -1.0), 1.0)
