@@ -90,10 +90,11 @@ class Manoeuvre(HelmForRate, Sampled):
     ================ =====================================================================
 
     Steady is a rate of turn whose means differ by 2 % or 0.02 deg/s, or a depth whose means do by
-    0.05 m; an order that waits for a steady rate ends after 20 windows at the latest. The last order stays when the manoeuvre is ``done``. Orders are given at instants, up to
-    one ``period`` after the heading is reached. Heading clockwise from north, rad; ``side`` 1 to
-    starboard, -1 to port. The speed along the bow is that over ground. ``power`` is that of up to
-    eight propulsors, ``line_force`` of the line at the bollard, {n}.
+    0.05 m; an order that waits for a steady rate ends after 20 windows at the latest. The last
+    order stays when the manoeuvre is ``done``. Orders are given at instants, up to one ``period``
+    after the heading is reached. Heading clockwise from north, rad; ``side`` 1 to starboard, -1 to
+    port. The speed along the bow is that over ground. ``power`` is that of up to eight propulsors,
+    ``line_force`` of the line at the bollard, {n}.
 
     Not modelled: a helmsman's lateness.
     """
