@@ -43,7 +43,9 @@ def _part(vehicle: str) -> str:
     trials = json.loads((FOLDER / f"{vehicle}.json").read_text("utf-8"))
     known = tomllib.loads((FOLDER / "published.toml").read_text("utf-8")).get(vehicle, {})
     head = ("trial", "figure", "to starboard", "to port", "of the real one")
-    text = table(head, _rows(trials, known.get("published", {})))
+    width = len(head) if "published" in known else len(head) - 1
+    rows = _rows(trials, known.get("published", {}))
+    text = table(head[:width], [row[:width] for row in rows])
     remarks = "".join(f"- {remark}\n" for remark in known.get("remarks", []))
     return f"{text}\n{remarks}" if remarks else text
 

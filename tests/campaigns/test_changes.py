@@ -1,4 +1,4 @@
-"""What a person sets in all cases of a campaign, and what comes beside its report."""
+"""Campaigns that are changed from outside, left out trials, and pages beside the report."""
 
 import pytest
 

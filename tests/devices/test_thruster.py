@@ -31,6 +31,13 @@ def test_settles_at_the_published_table(row):
     assert current == pytest.approx(row["current_A"], abs=1e-9)
 
 
+@pytest.mark.parametrize("row", ROWS[::20], ids=lambda row: f"{row['pwm_us']:g}us")
+def test_draws_the_published_power(row):
+    thruster = started(Thruster, time_constant=0.1, pulse=row["pwm_us"] / 1e6)
+    thruster.advance(0.0, 4.0)
+    assert thruster.get("power") == pytest.approx(row["power_W"], abs=0.01)
+
+
 @pytest.mark.parametrize("row", ROWS, ids=lambda row: f"{row['pwm_us']:g}us")
 def test_turns_as_fast_as_published(row):
     thruster = started(Thruster, time_constant=0.1, pulse=row["pwm_us"] / 1e6)

@@ -1,4 +1,4 @@
-"""Which manoeuvres apply to a vehicle: what its rig lets it do."""
+"""Abilities of a vehicle, by its rig: the manoeuvres of sea trials that apply to it."""
 
 from __future__ import annotations
 

@@ -36,9 +36,11 @@ _HEADING = math.radians(1.0)
 """Change of the mean heading within which the approach is straight, rad."""
 _DEPTH = 0.05
 """Change of the mean depth within which it is steady, m."""
-_FOUND = 0.01
+_FOUND = 0.005
 """Change of the mean helm, and error of the mean rate, shares, within which a helm is found."""
 _SPEED_SHARE, _RATE_SHARE = 0.01, 0.02
+_PATIENCE = 20
+"""Windows after which an order ends though nothing has become steady."""
 _ASTERN = -0.5
 """Speed order before a manoeuvre that begins at rest, while the craft still moves ahead."""
 _WATCHED = ("speed", "heading", "rate", "depth", "pitch", "helm")
@@ -88,10 +90,11 @@ class Manoeuvre(HelmForRate, Sampled):
     ================ =====================================================================
 
     Steady is a rate of turn whose means differ by 2 % or 0.02 deg/s, or a depth whose means do by
-    0.05 m. The last order stays when the manoeuvre is ``done``. Orders are given at instants, up to
-    one ``period`` after the heading is reached. Heading clockwise from north, rad; ``side`` 1 to
-    starboard, -1 to port. The speed along the bow is that over ground. ``power`` is that of up to
-    eight propulsors, ``line_force`` of the line at the bollard, {n}.
+    0.05 m; an order that waits for a steady rate ends after 20 windows at the latest. The last
+    order stays when the manoeuvre is ``done``. Orders are given at instants, up to one ``period``
+    after the heading is reached. Heading clockwise from north, rad; ``side`` 1 to starboard, -1 to
+    port. The speed along the bow is that over ground. ``power`` is that of up to eight propulsors,
+    ``line_force`` of the line at the bollard, {n}.
 
     Not modelled: a helmsman's lateness.
     """
@@ -244,7 +247,7 @@ class Manoeuvre(HelmForRate, Sampled):
 
     def _descent(self) -> float:
         """Return the manual dive that leads to the depth of the approach."""
-        if self._number or not self._is_deep():
+        if self._number or not self._is_deep() or self.kind in MODES:
             return 0.0
         deeper: float = self.depth_start - self.depth
         return min(max(deeper, -1.0), 1.0)
@@ -298,7 +301,8 @@ class Manoeuvre(HelmForRate, Sampled):
         if order.until == SETTLED:
             found = order.by != RATE or self._is_found(order.share)
             turning = self._is_steady("rate", _RATE_SHARE, _RATE)
-            return found and turning and self._is_moving_steadily()
+            steady = found and turning and self._is_moving_steadily()
+            return steady or self._has_lasted(_PATIENCE * self.window)
         if order.until == DEEP:
             return self._is_steady("depth", 0.0, _DEPTH)
         turned = self._level - self.pitch if order.by == PLANES else self._turned

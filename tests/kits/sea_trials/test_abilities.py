@@ -1,4 +1,4 @@
-"""Which manoeuvres apply to the shipped vehicles, as their rigs have it."""
+"""Manoeuvres that apply to the shipped vehicles, as their rigs have it."""
 
 import re
 

@@ -5,7 +5,7 @@ import math
 import pytest
 
 from seatrial.errors import InputError
-from seatrial_kits.sea_trials.evaluation import Done, criteria_name
+from seatrial_kits.sea_trials.evaluation import Done, criteria_name, figures_of, verdicts_of
 from seatrial_kits.sea_trials.figures.criteria import (
     first_overshoot_limit,
     imo,
@@ -67,3 +67,12 @@ def test_criteria_are_for_the_helm_that_they_name(kind, helm, heading, name):
     done = Done(kind, record("kvlcc2_full_turn_m35"), helm=math.radians(helm),
                 heading=math.radians(heading))  # fmt: skip
     assert criteria_name(done) == name
+
+
+@pytest.mark.parametrize(
+    ("criteria", "length", "count"),
+    [("length", 100.0, 2), ("length", 99.9, 0), ("imo", 99.9, 2), ("none", 320.0, 0)],
+)
+def test_the_criteria_are_for_ships_of_their_length_or_by_a_word(criteria, length, count):
+    done = Done("turning-circle", record("kvlcc2_full_turn_m35"), length=length, criteria=criteria)
+    assert len(verdicts_of(done, figures_of(done))) == count

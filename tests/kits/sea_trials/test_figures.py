@@ -71,9 +71,12 @@ def test_the_current_is_found_from_the_circle():
     offset=st.floats(-1e5, 1e5),
     mirror=st.sampled_from([1.0, -1.0]),
     wrapped=st.booleans(),
+    every=st.sampled_from([1, 2]),
 )
-def test_figures_do_not_depend_on_frame_side_or_clock(name, angle, offset, mirror, wrapped):
-    rec = record(name)
+def test_figures_do_not_depend_on_frame_side_clock_or_rows(
+    name, angle, offset, mirror, wrapped, every
+):
+    rec = record(name, every)
     cos, sin = math.cos(angle), math.sin(angle)
     north, east = rec.north, mirror * rec.east
     heading = mirror * rec.heading + angle
@@ -88,12 +91,23 @@ def test_figures_do_not_depend_on_frame_side_or_clock(name, angle, offset, mirro
 
 
 @settings(max_examples=3, deadline=None)
-@given(speed=st.floats(0.0, 0.2), towards=st.floats(0.0, math.tau))
-def test_a_current_moves_no_figure_of_the_water(speed, towards):
-    name = "kvlcc2_l7_turn_p35"
-    rec = record(name)
-    in_current = rec.through_water(-speed * math.cos(towards), -speed * math.sin(towards), 0.0)
-    assert_as_reference(name, turning_circle(in_current))
+@given(
+    speed=st.floats(0.0, 0.2),
+    towards=st.floats(0.0, math.tau),
+    every=st.sampled_from([1, 2]),
+)
+def test_a_current_moves_no_figure_of_the_water(speed, towards, every):
+    def drifting(name):
+        away = -speed * math.cos(towards), -speed * math.sin(towards)
+        return record(name, every).through_water(*away, 0.0)
+
+    assert_as_reference("kvlcc2_l7_turn_p35", turning_circle(drifting("kvlcc2_l7_turn_p35")))
+    zig_zag_10 = "kvlcc2_l7_zigzag_10_10"
+    found, still = (figures(zig_zag_10, rec) for rec in (drifting(zig_zag_10), record(zig_zag_10)))
+    for name in ("overshoot_1", "overshoot_2"):
+        assert found[name] == pytest.approx(still[name], abs=math.radians(TOLERANCE)), name
+    for name in ("reversal_3_time", "period"):
+        assert found[name] == pytest.approx(still[name], abs=TOLERANCE), name
 
 
 def test_a_point_ahead_of_midship_describes_a_wider_start():

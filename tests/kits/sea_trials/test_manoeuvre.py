@@ -153,6 +153,12 @@ def test_a_reverse_spiral_finds_the_branch_that_is_not_stable():
     assert found.width == pytest.approx(width, rel=0.3)
 
 
+def test_an_order_ends_though_nothing_becomes_steady():
+    trial = Trial(kind="bollard-pull", window=2.0, noise=0.5)
+    order = trial.component.get("order_time")
+    assert trial.ended - order == pytest.approx(40.0, abs=0.3)
+
+
 def test_a_speed_trial_runs_there_and_back_with_each_power():
     trial = Trial(kind="speed-trial", longest=3000.0)
     assert trial.ended is not None

@@ -24,11 +24,11 @@ class Thruster(PulseRange, Actuator):
         thrust = F(pulse) (V / 16 V)^1.15,    current = I(pulse) (V / 16 V)^1.15
         speed = n(pulse) (V / 16 V)^(1.15 / 2)
 
-    and all follow it with a first-order lag, solved exactly for the pulse held over a step: y(t +
-    h) = y_inf + (y(t) - y_inf) exp(-h / time_constant). So no output reacts to an input at the same
-    instant, but the power, voltage times current. The speed is for telemetry: its exponent is the
-    thrust's with the thrust of a propeller going by the square of its speed, and while it changes
-    that square is not kept.
+    and all follow it with a first-order lag, solved exactly for the pulse held over a step:
+    y(t + h) = y_inf + (y(t) - y_inf) exp(-h / time_constant). So no output reacts to an input at
+    the same instant. The power is V times the current. The speed is for telemetry: its exponent is
+    the thrust's with the thrust of a propeller going by the square of its speed, and while it
+    changes that square is not kept.
 
     **Signal.** Dead band of the table: 1472 to 1528 us gives nothing. Beyond ``pulse_min`` and
     ``pulse_max`` the controller is at full power. A width of 0, or outside 800 to 2200 us, is
@@ -68,7 +68,7 @@ class Thruster(PulseRange, Actuator):
     def start(self, t: float) -> None:
         """Start at rest; raises InputError if the pulses do not rise."""
         self.check_pulses()
-        self._thrust = self._current = self._speed = 0.0
+        self._thrust = self._current = self._speed = self._power = 0.0
         self.begin_at(self.pulse_neutral)
 
     def step(self, t: float, h: float) -> None:
@@ -83,11 +83,12 @@ class Thruster(PulseRange, Actuator):
         self._thrust = thrust + (self._thrust - thrust) * kept
         self._current = current + (self._current - current) * kept
         self._speed = speed + (self._speed - speed) * kept
+        self._power = max(self.supply_voltage, 0.0) * self._current
 
     def outputs(self, t: float) -> None:
         """Publish thrust, current, power and speed."""
         self.thrust, self.current, self.speed = self._thrust, self._current, self._speed
-        self.power = max(self.supply_voltage, 0.0) * self._current
+        self.power = self._power
 
     def _table_pulse(self, pulse: float) -> float:
         """Return the pulse that has the same effect in the table's calibration, s."""
