@@ -34,6 +34,7 @@ SECTIONS = {
         "otter",
         "bluerov2",
         "remus100",
+        "glider",
         "wam-v",
         "supply-ship",
     )
@@ -96,6 +97,9 @@ TURNS = {
     "gloria": lambda: turn("sailboat", "gloria", 1.0, rudder=-0.05, **{"eta_start.psi": 1, "nu_start.u": 1.5}),
     "remus100": lambda: turn(
         "fitted-craft", "remus100", 20.0, "hull", **{"propulsor_order.p1": 0.6, "foil_angle.f1": 0.2, "position_start.z": 5}
+    ),
+    "glider": lambda: turn(
+        "fitted-craft", "glider", 60.0, "hull", ballast_order=[-0.3, 0.4, 0.8] + 5 * [0], **{"position_start.z": 50, "velocity_start.u": 0.3}
     ),
     "wam-v": lambda: turn(
         "fitted-craft", "wam-v", 20.0, "hull", propulsor_order=[0.4, 0.3] + 6 * [0], waterplane_area=3.2, GM_T=19, GM_L=35
