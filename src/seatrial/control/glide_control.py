@@ -54,7 +54,15 @@ class GlideControl(PitchHold):
     Defaults: a glider of 50 kg and 1.5 m, as Slocum.
     """
 
-    exercised: ClassVar = {"capacity": 1e12, "rate_limit": 1e9, "pitch": 0.2, "depth_wanted": 1.0}
+    exercised: ClassVar = {
+        "capacity": 1e12,
+        "rate_limit": 1e9,
+        "damping_per_speed": 0.7,
+        "climb_to": 0.1,
+        "dive_to": 0.2,
+        "pitch": 0.2,
+        "depth_wanted": 0.6,
+    }
 
     natural_frequency = Parameter(0.5, "rad/s", "w of the pitch", min=1e-9, tunable=True)
     integral_pole = Parameter(0.3, "rad/s", "sigma of the pitch", min=0.0, tunable=True)
