@@ -134,6 +134,7 @@ for _vehicle in (
     "otter",
     "bluerov2",
     "remus100",
+    "glider",
     "wam-v",
 ):
     part(f"{_vehicle}-parameters")(partial(parameters, _vehicle))

@@ -19,12 +19,12 @@ from seatrial_kits.design.heading_page import stability
 
 
 def verdicts(rig: str) -> str:
-    """Every criterion of the trials whose names begin so, and what was found.
+    """Every criterion of the trials whose names are, or begin, so, and what was found.
 
     Trials in real time are for whoever connects.
     """
     rows = []
-    names = (name for name in available("harness/trials") if name.startswith(f"{rig}-"))
+    names = (name for name in available("harness/trials") if f"{name}-".startswith(f"{rig}-"))
     for name in sorted(names, key=lambda name: f"{name}.toml"):  # as files are listed
         trial = load_trial(name)
         if trial.file.real_time:
@@ -41,7 +41,7 @@ def verdicts(rig: str) -> str:
 for _rig in (
     *("gloria-fixed", "gloria-pid", "gloria-backstepping"),
     *("mariner", "thruster-ship", "videoray-open", "videoray-drive", "videoray-tethered"),
-    *("otter", "bluerov2", "dive", "supply-ship", "wam-v"),
+    *("otter", "bluerov2", "dive", "glide", "supply-ship", "wam-v"),
 ):
     part(f"{_rig}-trials")(partial(verdicts, _rig))
 

@@ -5,10 +5,12 @@ import math
 import pytest
 
 from seatrial.control.glide_control import GlideControl
+from seatrial.errors import InputError
 from tests.devices.running import started
 
 DEPTH, HEADING, NONE = [True, True, True], [False, True, False], [False, False, False]
-GLIDE = {"glide_pitch": 0.4, "buoyancy": 0.6, "climb_to": 5.0, "depth_wanted": 20.0}
+GLIDE = {"glide_pitch": 0.4, "buoyancy": 0.6, "climb_to": 5.0, "dive_to": 10.0}
+GLIDE |= {"depth_wanted": 20.0}
 
 
 def control(**values):
@@ -31,6 +33,16 @@ def test_a_depth_wanted_at_the_surface_is_a_climb():
     glide = control(depth=2.0, depth_wanted=0.0)
     assert not glide.get("dives")
     assert glide.get("buoyancy_order") == 0.6
+
+
+def test_a_shallow_depth_is_a_dive_to_the_least_one():
+    dives = [control(depth=d, depth_wanted=1.0).get("dives") for d in (2.0, 9.9, 10.0)]
+    assert dives == [True, True, False]
+
+
+def test_depths_that_do_not_go_together_are_refused():
+    with pytest.raises(InputError, match=r"climb_to is 10\.0 m, not above dive_to, 10\.0 m"):
+        control(climb_to=10.0)
 
 
 def test_the_mass_gives_the_moment_that_is_asked_for():

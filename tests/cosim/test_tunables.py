@@ -153,5 +153,5 @@ def test_every_shipped_profile_is_here():
     shipped = {path.stem for path in (Path(__file__).parents[2] / "hil_profiles").glob("*.toml")}
     assert shipped == {
         *("hydrone", "videoray", "gloria", "mariner", "kvlcc2", "otter", "bluerov2"),
-        *("remus100", "supply-ship", "wam-v"),
+        *("remus100", "glider", "supply-ship", "wam-v"),
     }

@@ -32,6 +32,7 @@ def feeders(rig, **choices):
         "otter",
         "bluerov2",
         "remus100",
+        "glider",
         "wam-v",
         "supply-ship",
     ],
@@ -41,7 +42,7 @@ def test_a_plotter_follows_and_commands_every_vehicle(vehicle):
     feed, guidance = "autopilot.instruments", "autopilot.pilot.guidance"
     assert fed[f"{feed}.heading"] == fed[f"{guidance}.heading"]
     assert fed[f"{feed}.position_n.north"] == "vehicle.{}.position_n.north".format(
-        "positioning" if vehicle in ("videoray", "bluerov2", "remus100") else "gnss"
+        "positioning" if vehicle in ("videoray", "bluerov2", "remus100", "glider") else "gnss"
     )
     assert fed[f"{guidance}.target_heading"] == f"{feed}.target_heading"
     assert fed[f"{guidance}.leg"] == "autopilot.course.leg"

@@ -11,7 +11,7 @@ from .test_shipped_trials import TRIALS
 pytestmark = pytest.mark.interop
 
 
-DATA_ALONE = ("otter", "bluerov2", "dive", "supply-ship", "wam-v")
+DATA_ALONE = ("otter", "bluerov2", "dive", "glide", "supply-ship", "wam-v")
 
 
 @pytest.mark.parametrize("name", [n for n in TRIALS if n.startswith(DATA_ALONE)])

@@ -4,16 +4,20 @@ from __future__ import annotations
 
 from typing import ClassVar
 
+from ..errors import InputError
 from ..model.component import Input, Output, Parameter, terminal
 from .pitch_hold import PitchHold, clip
+
+_SURFACE = 0.5
+"""m: a depth wanted that is less is the surface."""
 
 
 class GlideControl(PitchHold):
     """Dives and climbs between two depths, the pitch held by a moving mass: a glider's yo.
 
-    It dives until ``depth`` reaches ``depth_wanted``, then climbs until it is back at
-    ``climb_to``, and so on; where ``depth_wanted`` is not below ``climb_to`` it climbs, to the
-    surface. Speed and glide path follow:
+    It dives until ``depth`` reaches the deeper of ``depth_wanted`` and ``dive_to``, then climbs
+    until it is back at ``climb_to``, and so on; a ``depth_wanted`` of less than 0.5 m is the
+    surface, where it floats. Speed and glide path follow:
 
         ========  =========================  ====================
         state     buoyancy_order             pitch_ordered
@@ -42,13 +46,23 @@ class GlideControl(PitchHold):
     ``roll_order`` 1 furthest to starboard. ``engaged``, ``direct`` and ``depth_wanted`` are those
     of `Guidance`; its speeds are not followed.
 
+    Raises InputError at the start for a ``climb_to`` that is not above ``dive_to``.
+
     Not modelled: a turn ahead of the depth, by as much as the pump takes; trim of the ballast by
     the rate of change of the depth.
 
     Defaults: a glider of 50 kg and 1.5 m, as Slocum.
     """
 
-    exercised: ClassVar = {"capacity": 1e12, "rate_limit": 1e9, "pitch": 0.2}
+    exercised: ClassVar = {
+        "capacity": 1e12,
+        "rate_limit": 1e9,
+        "damping_per_speed": 0.7,
+        "climb_to": 0.1,
+        "dive_to": 0.2,
+        "pitch": 0.2,
+        "depth_wanted": 0.6,
+    }
 
     natural_frequency = Parameter(0.5, "rad/s", "w of the pitch", min=1e-9, tunable=True)
     integral_pole = Parameter(0.3, "rad/s", "sigma of the pitch", min=0.0, tunable=True)
@@ -59,6 +73,7 @@ class GlideControl(PitchHold):
         0.02, "rad/s", "largest rate of the pitch wanted", min=1e-9, tunable=True
     )
     climb_to = Parameter(3.0, "m", "depth from which on it dives again", min=0.0, tunable=True)
+    dive_to = Parameter(20.0, "m", "least depth to which it dives", min=0.0, tunable=True)
     glide_pitch = Parameter(0.4, "rad", "pitch of a glide", min=0.05, max=1.5, tunable=True)
     buoyancy = Parameter(
         0.5, "1", "share of the buoyancy engine in a glide", min=0.0, max=1.0, tunable=True
@@ -77,7 +92,12 @@ class GlideControl(PitchHold):
     terminals: ClassVar = {**PitchHold.terminals, "demand": terminal("yaw_moment")}
 
     def reset(self, t: float) -> None:
-        """Start with a dive, at rest."""
+        """Start with a dive, at rest; raises InputError for depths that do not go together."""
+        if not self.climb_to < self.dive_to:
+            raise InputError(
+                f"{self.name}.climb_to is {self.climb_to!r} m, "
+                f"not above dive_to, {self.dive_to!r} m"
+            )
         super().reset(t)
         self._dived = True
 
@@ -107,7 +127,8 @@ class GlideControl(PitchHold):
 
     def _dives(self) -> bool:
         """Return whether it is to dive: as before between the two depths."""
-        if self.depth_wanted <= self.climb_to or self.depth >= self.depth_wanted:
+        surfaces = self.depth_wanted < _SURFACE
+        if surfaces or self.depth >= max(self.depth_wanted, self.dive_to):
             return False
         return bool(self._dived or self.depth <= self.climb_to)
 
