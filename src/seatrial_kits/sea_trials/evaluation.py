@@ -13,6 +13,7 @@ from seatrial.errors import InputError, unknown
 from .figures.course_stability import loop, pull_out, spiral
 from .figures.handling import turn_on_the_spot, williamson
 from .figures.nomoto import nomoto
+from .figures.nomoto_second import nomoto_second
 from .figures.record import Array, Record
 from .figures.result import Figure, Figures
 from .figures.straight import acceleration, stopping
@@ -99,7 +100,14 @@ def _zig_zag(done: Done) -> Figures:
         speed = approach_speed_of(done, figures)
         gain, lag = model.nondimensional(done.length, speed)
         found |= {"nomoto_K'": Figure(gain, "1"), "nomoto_T'": Figure(lag, "1")}
-    return replace(figures, found={**figures.found, **found})
+    figures = replace(figures, found={**figures.found, **found})
+    names = ("nomoto_T1", "nomoto_T2", "nomoto_T3")
+    try:
+        second = nomoto_second(_after(done.record, done.first))
+    except InputError as error:
+        return replace(figures, missing={**figures.missing, **dict.fromkeys(names, str(error))})
+    lags = zip(names, (second.T1, second.T2, second.T3), strict=True)
+    return replace(figures, found={**figures.found, **{n: Figure(v, "s") for n, v in lags}})
 
 
 def _after(record: Record, order: float | None) -> Record:

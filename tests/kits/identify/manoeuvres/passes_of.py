@@ -30,8 +30,8 @@ def noisy(time, north, east, heading, seed, errors=(GNSS, COMPASS)):
     )
 
 
-def kvlcc2(name, seed=None):
-    rows = np.loadtxt(FOLDER / f"kvlcc2_{name}.csv", delimiter=",", skiprows=2)
+def kvlcc2(name, seed=None, last=None):
+    rows = np.loadtxt(FOLDER / f"kvlcc2_{name}.csv", delimiter=",", skiprows=2)[:last]
     orders = {"rudder": -rows[:, 7], "propeller_order": np.ones(len(rows))}
     return Pass(Path(name), noisy(*rows[:, :4].T, seed), orders)
 

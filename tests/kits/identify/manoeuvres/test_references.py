@@ -8,7 +8,7 @@ import pytest
 from seatrial_kits.identify.manoeuvres.replay import craft_of
 from seatrial_kits.identify.manoeuvres.study import manoeuvre_study
 
-from .passes_of import kvlcc2
+from .passes_of import kvlcc2, otter
 
 
 def perturbed(craft, free, seed=5, share=0.3):
@@ -67,6 +67,33 @@ def test_with_noise_of_gnss_and_compass_at_1_hz_intervals_hold_the_published_val
 
 
 def test_a_turn_shows_the_current():
-    _, rows = identified("kvlcc2", [kvlcc2("full_turn_p35_current", seed=2)], ("resistance",))
+    _, rows = identified("kvlcc2", [kvlcc2("full_turn_p35_current", 2, last=1200)], SHIP[:1])
     currents = [row.value for row, _ in rows if row.is_current]
     assert currents == pytest.approx([0.5, 1.0], abs=0.005)
+
+
+@pytest.mark.long
+def test_all_usual_parameters_of_the_tanker_from_a_zig_zag_and_a_turn():
+    passes = [kvlcc2("full_zigzag_20_20", seed=1), kvlcc2("full_turn_m35", seed=2)]
+    found, rows = identified("kvlcc2", passes)
+    assert found.accepted
+    told = [(row, true) for row, true in rows if row.told]
+    assert {"resistance", "added_mass.x", "added_mass.y", "N.v", "N.r"} <= {r.name for r, _ in told}
+    # Of so many intervals of 95 % one may miss.
+    missed = [row.name for row, true in told if not row.interval[0] <= true <= row.interval[1]]
+    assert len(missed) <= 1
+    assert "N.vvv" in {row.name for row, _ in rows if not row.told}
+    assert any("N.vvr and N.vvv are hardly told apart" in note for note in found.notes)
+
+
+@pytest.mark.long
+def test_the_otter_comes_back_from_an_acceleration_and_a_turn():
+    free = ("linear_damping_force.u", "added_mass.xx", "linear_damping_moment.r",
+            "quadratic_damping_moment.r", "linear_damping_force.v")  # fmt: skip
+    found, rows = identified("otter", [otter("acceleration", 1), otter("turn", 2)], free)
+    assert found.accepted
+    told = [(row, true) for row, true in rows if row.told]
+    assert "linear_damping_force.u" in {row.name for row, _ in told}
+    assert all(row.interval[0] <= true <= row.interval[1] for row, true in told)
+    kept = [row.name for row, _ in rows if not row.told]
+    assert all(any(name in note for note in found.notes) for name in kept)
