@@ -88,11 +88,15 @@ def approach_speed_of(done: Done, figures: Figures) -> float:
 
 def _zig_zag(done: Done) -> Figures:
     figures = zig_zag(done.record, done.heading, done.first)
+    return _with_second_order(done, _with_first_order(done, figures))
+
+
+def _with_first_order(done: Done, figures: Figures) -> Figures:
     names = ("nomoto_K", "nomoto_T", "nomoto_delta_0", "nomoto_residual")
     try:
         model = nomoto(_after(done.record, done.first))
     except InputError as error:
-        return replace(figures, missing={**figures.missing, **dict.fromkeys(names, str(error))})
+        return _without(figures, names, error)
     values = (model.K, model.T, model.delta_0, model.residual)
     units = ("1/s", "s", "rad", "rad")
     found = {n: Figure(v, u) for n, v, u in zip(names, values, units, strict=True)}
@@ -100,14 +104,21 @@ def _zig_zag(done: Done) -> Figures:
         speed = approach_speed_of(done, figures)
         gain, lag = model.nondimensional(done.length, speed)
         found |= {"nomoto_K'": Figure(gain, "1"), "nomoto_T'": Figure(lag, "1")}
-    figures = replace(figures, found={**figures.found, **found})
+    return replace(figures, found={**figures.found, **found})
+
+
+def _with_second_order(done: Done, figures: Figures) -> Figures:
     names = ("nomoto_T1", "nomoto_T2", "nomoto_T3")
     try:
-        second = nomoto_second(_after(done.record, done.first))
+        model = nomoto_second(_after(done.record, done.first))
     except InputError as error:
-        return replace(figures, missing={**figures.missing, **dict.fromkeys(names, str(error))})
-    lags = zip(names, (second.T1, second.T2, second.T3), strict=True)
+        return _without(figures, names, error)
+    lags = zip(names, (model.T1, model.T2, model.T3), strict=True)
     return replace(figures, found={**figures.found, **{n: Figure(v, "s") for n, v in lags}})
+
+
+def _without(figures: Figures, names: tuple[str, ...], error: InputError) -> Figures:
+    return replace(figures, missing={**figures.missing, **dict.fromkeys(names, str(error))})
 
 
 def _after(record: Record, order: float | None) -> Record:
