@@ -66,7 +66,10 @@ def test_the_copy_is_the_vehicle_with_a_variant_and_all_else_as_it_was(done, fol
 def test_the_copy_is_found_by_name_and_has_the_numbers(done, folder):
     run = seatrial("describe", "vehicles/kvlcc2-identified", cwd=folder / "found")
     assert run.returncode == 0, run.stderr
-    assert "variant identified" in run.stdout
+    copy = folder / "found/harness/vehicles/kvlcc2-identified/vehicle.toml"
+    values = load_vehicle(str(copy)).parameter_set("mmg-ship", None).values
+    assert values["N.r"].value == pytest.approx(-0.049, rel=0.01)
+    assert values["N.r"].value != -0.049
 
 
 def test_the_page_shows_the_trial_again(done, folder):
@@ -82,6 +85,8 @@ def test_the_page_shows_the_trial_again(done, folder):
         ((COLUMNS[0], "rudder=port"), "propeller_order lack: --columns propeller_order=NAME"),
         ((COLUMNS[0], "ruder=port"), "unknown column 'ruder'; did you mean 'rudder'"),
         ((COLUMNS[0], "rudder=prt,speed=1"), "rudder: unknown column 'prt'; did you mean 'port'"),
+        ((COLUMNS[0], "yaw=port:deg,speed=1"), "cannot convert"),
+        ((COLUMNS[0], "yaw=2,speed=1"), "yaw: shares from -1 to 1 are needed"),
         ((COLUMNS[0], "rudder"), "WHAT=NAME[:UNIT] or WHAT=NUMBER is needed, found 'rudder'"),
         (("time=t,north=x,east=y,heading=psi:deg", "yaw=0,speed=1"), "not deg"),
     ],
