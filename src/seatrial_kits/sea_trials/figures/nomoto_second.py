@@ -1,4 +1,4 @@
-"""Nomoto's second-order model of steering from a record, where it can be told from the first."""
+"""Nomoto's second-order model of steering from a record, where it is identifiable."""
 
 from __future__ import annotations
 

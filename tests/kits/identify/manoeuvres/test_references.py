@@ -45,7 +45,7 @@ def test_derivatives_of_the_tanker_come_back_from_a_zig_zag(ship):
     assert found.accepted
     for row, true in rows:
         if row.name in SHIP:
-            assert row.told
+            assert row.is_identifiable
             assert row.value == pytest.approx(true, rel=0.02), row.name
     # Rows of 1 s hide the corners of a rudder of 2.34 deg/s.
     (shown,) = found.shown
@@ -54,9 +54,9 @@ def test_derivatives_of_the_tanker_come_back_from_a_zig_zag(ship):
 
 def test_with_noise_of_gnss_and_compass_at_1_hz_intervals_hold_the_published_values(noisy_ship):
     found, rows = noisy_ship
-    told = [(row, true) for row, true in rows if row.told and not row.is_current]
-    assert {"resistance", "Y.v", "N.v", "N.r"} <= {row.name for row, _ in told}
-    for row, true in told:
+    shown = [(row, true) for row, true in rows if row.is_identifiable and not row.is_current]
+    assert {"resistance", "Y.v", "N.v", "N.r"} <= {row.name for row, _ in shown}
+    for row, true in shown:
         low, high = row.interval
         assert low <= true <= high, row
         assert high - low < 0.6 * abs(true)
@@ -77,13 +77,15 @@ def test_all_usual_parameters_of_the_tanker_from_a_zig_zag_and_a_turn():
     passes = [kvlcc2("full_zigzag_20_20", seed=1), kvlcc2("full_turn_m35", seed=2)]
     found, rows = identified("kvlcc2", passes)
     assert found.accepted
-    told = [(row, true) for row, true in rows if row.told]
-    assert {"resistance", "added_mass.x", "added_mass.y", "N.v", "N.r"} <= {r.name for r, _ in told}
+    shown = [(row, true) for row, true in rows if row.is_identifiable]
+    assert {"resistance", "added_mass.x", "added_mass.y", "N.v", "N.r"} <= {
+        r.name for r, _ in shown
+    }
     # Of so many intervals of 95 % one may miss.
-    missed = [row.name for row, true in told if not row.interval[0] <= true <= row.interval[1]]
+    missed = [row.name for row, true in shown if not row.interval[0] <= true <= row.interval[1]]
     assert len(missed) <= 1
-    assert "N.vvv" in {row.name for row, _ in rows if not row.told}
-    assert any("N.vvr and N.vvv are hardly told apart" in note for note in found.notes)
+    assert "N.vvv" in {row.name for row, _ in rows if not row.is_identifiable}
+    assert any("N.vvr and N.vvv are hardly separable" in note for note in found.notes)
 
 
 @pytest.mark.long
@@ -92,8 +94,8 @@ def test_the_otter_comes_back_from_an_acceleration_and_a_turn():
             "quadratic_damping_moment.r", "linear_damping_force.v")  # fmt: skip
     found, rows = identified("otter", [otter("acceleration", 1), otter("turn", 2)], free)
     assert found.accepted
-    told = [(row, true) for row, true in rows if row.told]
-    assert "linear_damping_force.u" in {row.name for row, _ in told}
-    assert all(row.interval[0] <= true <= row.interval[1] for row, true in told)
-    kept = [row.name for row, _ in rows if not row.told]
+    shown = [(row, true) for row, true in rows if row.is_identifiable]
+    assert "linear_damping_force.u" in {row.name for row, _ in shown}
+    assert all(row.interval[0] <= true <= row.interval[1] for row, true in shown)
+    kept = [row.name for row, _ in rows if not row.is_identifiable]
     assert all(any(name in note for note in found.notes) for name in kept)
