@@ -85,7 +85,7 @@ def test_the_page_shows_the_trial_again(done, folder):
         ((COLUMNS[0], "rudder=port"), "propeller_order lack: --columns propeller_order=NAME"),
         ((COLUMNS[0], "ruder=port"), "unknown column 'ruder'; did you mean 'rudder'"),
         ((COLUMNS[0], "rudder=prt,speed=1"), "rudder: unknown column 'prt'; did you mean 'port'"),
-        ((COLUMNS[0], "yaw=port:deg,speed=1"), "cannot convert"),
+        ((COLUMNS[0], "yaw=port:deg,speed=1"), "unit 'deg' cannot be converted to '1'"),
         ((COLUMNS[0], "yaw=2,speed=1"), "yaw: shares from -1 to 1 are needed"),
         ((COLUMNS[0], "rudder"), "WHAT=NAME[:UNIT] or WHAT=NUMBER is needed, found 'rudder'"),
         (("time=t,north=x,east=y,heading=psi:deg", "yaw=0,speed=1"), "not deg"),
