@@ -8,7 +8,7 @@ import pytest
 from seatrial_kits.identify.manoeuvres.replay import craft_of
 from seatrial_kits.identify.manoeuvres.study import manoeuvre_study
 
-from .passes_of import kvlcc2, otter
+from .passes_of import kvlcc2
 
 
 def perturbed(craft, free, seed=5, share=0.3):
@@ -77,7 +77,7 @@ def test_all_usual_parameters_of_the_tanker_from_a_zig_zag_and_a_turn():
     passes = [kvlcc2("full_zigzag_20_20", seed=1), kvlcc2("full_turn_m35", seed=2)]
     found, rows = identified("kvlcc2", passes)
     assert found.accepted
-    shown = [(row, true) for row, true in rows if row.is_identifiable]
+    shown = [(row, true) for row, true in rows if row.is_identifiable and not row.is_current]
     assert {"resistance", "added_mass.x", "added_mass.y", "N.v", "N.r"} <= {
         r.name for r, _ in shown
     }
@@ -86,16 +86,3 @@ def test_all_usual_parameters_of_the_tanker_from_a_zig_zag_and_a_turn():
     assert len(missed) <= 1
     assert "N.vvv" in {row.name for row, _ in rows if not row.is_identifiable}
     assert any("N.vvr and N.vvv are hardly separable" in note for note in found.notes)
-
-
-@pytest.mark.long
-def test_the_otter_comes_back_from_an_acceleration_and_a_turn():
-    free = ("linear_damping_force.u", "added_mass.xx", "linear_damping_moment.r",
-            "quadratic_damping_moment.r", "linear_damping_force.v")  # fmt: skip
-    found, rows = identified("otter", [otter("acceleration", 1), otter("turn", 2)], free)
-    assert found.accepted
-    shown = [(row, true) for row, true in rows if row.is_identifiable]
-    assert "linear_damping_force.u" in {row.name for row, _ in shown}
-    assert all(row.interval[0] <= true <= row.interval[1] for row, true in shown)
-    kept = [row.name for row, _ in rows if not row.is_identifiable]
-    assert all(any(name in note for note in found.notes) for name in kept)
