@@ -49,7 +49,7 @@ class Landing:
         self.hull: Any = system.parts["hull"].instance.component
         self.load: Any = system.parts["downwash"].instance.component
         self.pieces = ((0.0, self.load.contact_time), (self.load.contact_time, END))
-        model = self.hull._compiled()
+        model = self.hull.compiled()
         self.rhs, self.p = model.rhs, self.hull._stacked_p()
         self.start, self.u = self.hull._start_state(), self.hull._stacked_u(None)
         self.places = [self.hull._place_of(name) for name in ("force_1", "moment_1")]

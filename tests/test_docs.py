@@ -62,7 +62,11 @@ COMPONENT = [
     for name in ("write-a-component", "write-a-sensor", "write-a-plant", "build-an-fmu")
 ]
 """The pages of a user's own components."""
-LONG = {KITS / "identify/identification.md", DOCS / "vehicles/guidance.md"}
+LONG = {
+    KITS / "identify/identification.md",
+    KITS / "identify/from-trials.md",
+    DOCS / "vehicles/guidance.md",
+}
 """Pages whose examples take minutes."""
 ELSEWHERE = {
     KITS / "arduino/arduino.md",  # a fixture of the sketch's own tests

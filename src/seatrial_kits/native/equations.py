@@ -53,7 +53,7 @@ void model_along(const double *x, const double *u, const double *p, const double
 }}
 """
 
-_OWN = ("step", "outputs", "_load", "_publish", "_compiled", "advance", "refresh")
+_OWN = ("step", "outputs", "_load", "_publish", "compiled", "advance", "refresh")
 """Methods that `plant.c` has in C: who overrides one is another component."""
 
 

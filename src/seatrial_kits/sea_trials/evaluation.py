@@ -14,6 +14,7 @@ from .figures.course_stability import loop, pull_out, spiral, stability
 from .figures.criteria import SHIP, Verdict, imo
 from .figures.handling import station_box, turn_on_the_spot, williamson
 from .figures.nomoto import nomoto
+from .figures.nomoto_second import nomoto_second
 from .figures.record import Array, Record
 from .figures.result import Figure, Figures
 from .figures.straight import acceleration, bollard_pull, speed_trial, stopping
@@ -107,11 +108,15 @@ def approach_speed_of(done: Done, figures: Figures) -> float:
 
 def _zig_zag(done: Done) -> Figures:
     figures = zig_zag(done.record, done.heading, done.first)
+    return _with_second_order(done, _with_first_order(done, figures))
+
+
+def _with_first_order(done: Done, figures: Figures) -> Figures:
     names = ("nomoto_K", "nomoto_T", "nomoto_delta_0", "nomoto_residual")
     try:
         model = nomoto(_after(done.record, done.first))
     except InputError as error:
-        return replace(figures, missing={**figures.missing, **dict.fromkeys(names, str(error))})
+        return _without(figures, names, error)
     values = (model.K, model.T, model.delta_0, model.residual)
     units = ("1/s", "s", "rad", "rad")
     found = {n: Figure(v, u) for n, v, u in zip(names, values, units, strict=True)}
@@ -120,6 +125,20 @@ def _zig_zag(done: Done) -> Figures:
         gain, lag = model.nondimensional(done.length, speed)
         found |= {"nomoto_K'": Figure(gain, "1"), "nomoto_T'": Figure(lag, "1")}
     return replace(figures, found={**figures.found, **found})
+
+
+def _with_second_order(done: Done, figures: Figures) -> Figures:
+    names = ("nomoto_T1", "nomoto_T2", "nomoto_T3")
+    try:
+        model = nomoto_second(_after(done.record, done.first))
+    except InputError as error:
+        return _without(figures, names, error)
+    lags = zip(names, (model.T1, model.T2, model.T3), strict=True)
+    return replace(figures, found={**figures.found, **{n: Figure(v, "s") for n, v in lags}})
+
+
+def _without(figures: Figures, names: tuple[str, ...], error: InputError) -> Figures:
+    return replace(figures, missing={**figures.missing, **dict.fromkeys(names, str(error))})
 
 
 def _after(record: Record, order: float | None) -> Record:

@@ -21,6 +21,8 @@ _DRAWS = 100
 _FOUND = 0.9
 """Share of the draws that must have a figure for its uncertainty to be known."""
 _WITHIN = 1.96
+_ROUNDING = 1e-9
+"""Share of a figure up to which it does not depend on the errors."""
 _MEASURED = ("north", "east", "heading", *FURTHER)
 
 
@@ -50,8 +52,9 @@ def with_uncertainty(done: Done, found: Figures, errors: Mapping[str, float]) ->
 
     Normal errors of standard deviation ``errors``, SI, independent from row to row, are added to
     the columns of the record a hundred times, and the figures found again (propagation of
-    distributions, JCGM 101:2008). A figure that less than nine in ten of these records have keeps
-    none. An error that all rows share, as of a compass that is misaligned, is not in it.
+    distributions, JCGM 101:2008). A figure that does not depend on these errors, or that less than
+    nine in ten of the records have, is left as it is. An error that all rows share, as of a
+    compass that is misaligned, is not in it.
 
     Raises InputError for an error of a column that the record does not have.
     """
@@ -69,8 +72,11 @@ def with_uncertainty(done: Done, found: Figures, errors: Mapping[str, float]) ->
             continue
         for name, value in again.items():
             drawn[name].append(value)
-    known = {name: _WITHIN * float(np.std(values, ddof=1))
-             for name, values in drawn.items() if len(values) >= _FOUND * _DRAWS}  # fmt: skip
-    figures = {name: replace(each, uncertainty=known.get(name)) for name, each in
-               found.found.items()}  # fmt: skip
+    halves = {name: _WITHIN * float(np.std(values, ddof=1))
+              for name, values in drawn.items() if len(values) >= _FOUND * _DRAWS}  # fmt: skip
+    figures = {
+        name: replace(each, uncertainty=halves[name])
+        if halves.get(name, 0.0) > _ROUNDING * abs(each.value) else each
+        for name, each in found.found.items()
+    }  # fmt: skip
     return replace(found, found=figures)

@@ -23,17 +23,17 @@ def deviations(
     jacobian: Vector,
     residual: Vector,
     stretches: Sequence[int],
-    told: Sequence[int],
+    shown: Sequence[int],
     kept: Sequence[int],
 ) -> Vector:
-    """Return the standard deviations of the unknowns ``told`` (places of columns).
+    """Return the standard deviations of the unknowns ``shown`` (places of columns).
 
     C + G P G^T: C is the covariance with the others known, the larger one of that of a white
     residual and of that with its autocorrelation, which so few waves underrate, G = -(J^T J)^-1 J^T
     J_kept is what an error of the kept ones does to them, P their variance, `FILE` squared: a
     consider covariance (Bierman, Factorization Methods for Discrete Sequential Estimation, 1977).
     """
-    J = jacobian[:, told]
+    J = jacobian[:, shown]
     variances = np.maximum(*(np.diag(each) for each in covariances(J, residual, stretches)))
     carried = np.linalg.lstsq(J, jacobian[:, kept], rcond=None)[0]
     found: Vector = np.sqrt(variances + FILE**2 * (carried**2).sum(axis=1))

@@ -13,7 +13,7 @@ from seatrial.whole_file import write_whole
 from .intervals import WITHIN
 from .study import ManoeuvreStudy, Row, Shown
 
-HEADINGS = ("", "before", "identified", "+-", "unit", "told", "+- by bootstrap")
+HEADINGS = ("", "before", "identified", "+-", "unit", "identifiable", "+- by bootstrap")
 _DEGREES = math.degrees(1.0)
 
 
@@ -24,11 +24,11 @@ def table_rows(study: ManoeuvreStudy) -> list[tuple[str, ...]]:
 
 def _texts(row: Row) -> tuple[str, ...]:
     before = "" if row.is_current else number(row.before, 4)
-    if not row.told:
+    if not row.is_identifiable:
         return (row.name, before, "kept", "", row.unit, "no", "")
     half, drawn = (number(WITHIN * each, 2) for each in (row.deviation, row.resampled))
-    told = "hardly" if row.partner else "yes"
-    return (row.name, before, number(row.value, 4), half, row.unit, told, drawn)
+    said = "hardly" if row.partner else "yes"
+    return (row.name, before, number(row.value, 4), half, row.unit, said, drawn)
 
 
 def pass_rows(study: ManoeuvreStudy) -> list[tuple[str, ...]]:

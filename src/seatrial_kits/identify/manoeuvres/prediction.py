@@ -30,8 +30,6 @@ _SETTLING = 30.0
 _GUESSED = 20.0
 """Longest time over which the first velocity is guessed, s; at most a tenth of the record is."""
 _LEAST = 8
-_WORTH = 10_000
-"""Steps of the integration from which a compiler saves more time than it takes."""
 _LONGEST, _ACCURACY = 2.0, 1e-5
 """Longest step of the integration, s, and the share of the span that a longer step may change."""
 
@@ -63,10 +61,13 @@ class Predictor:
     Unknowns are the relative changes theta of the free parameters p = p_file (1 + theta), the
     current over ``speed``, north and east, and `STARTS`. Positions are those through the water plus
     the current times the time: in water that moves uniformly the same orders give the same
-    motion. Runge-Kutta of order 4, inputs linear between rows, exact derivatives of its steps.
+    motion. Runge-Kutta of order 4, inputs linear between rows, exact derivatives of its steps,
+    which a compiler makes machine code of if it ``compiles`` and there is one.
     """
 
-    def __init__(self, craft: Craft, motion: Motion, free: Sequence[str], speed: float) -> None:
+    def __init__(
+        self, craft: Craft, motion: Motion, free: Sequence[str], speed: float, *, compiles: bool
+    ) -> None:
         self.motion, self._speed, self._count = motion, speed, len(free)
         model, names = craft.model, list(craft.parameters)
         self._starts = craft.places(STARTS)
@@ -80,7 +81,7 @@ class Predictor:
         places = craft.places(READINGS)
         unknowns = ca.vertcat(theta, starts)
         step = sensitive_period(model, unknowns, p, lambda x, _: x[places], 1, self._moved, known)
-        if len(motion.steps) > _WORTH:
+        if compiles:
             step = compiled_function(step)
         self._known = np.array(list(craft.parameters.values()))
         self._run = step.mapaccum(len(motion.steps), {"base": 8})

@@ -17,6 +17,8 @@ from .prediction import CURRENT, READINGS, STARTS, Motion, Predictor
 _ROUNDS, _EVALUATIONS = 2, 30
 _ROUGH, _FINE = 1e-3, 1e-7
 """Relative accuracy while something holds the parameters, and of the result."""
+_WORTH = 2500
+"""Steps of all passes from which a compiler saves more time than it takes."""
 _SPREAD = (0.01, 0.01, 0.01)
 """First scale of the residual of each reading, as a share of what the reading covers."""
 _LEAST_SPREAD = 1e-9
@@ -47,7 +49,10 @@ class Problem:
     def __init__(self, craft: Craft, motions: Sequence[Motion], free: Sequence[str]) -> None:
         self.craft, self.motions, self.free = craft, motions, tuple(free)
         self.speed = max(_speed(motion) for motion in motions)
-        self._predictors = [Predictor(craft, motion, free, self.speed) for motion in motions]
+        compiles = sum(len(motion.steps) for motion in motions) > _WORTH
+        self._predictors = [
+            Predictor(craft, motion, free, self.speed, compiles=compiles) for motion in motions
+        ]
         self.currents = [[f"{name} {i + 1}" for name in CURRENT] for i in range(len(motions))]
         """Names of north and east of the current of each pass."""
         self.named = (*self.free, *(name for pair in self.currents for name in pair))

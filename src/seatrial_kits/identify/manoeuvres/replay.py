@@ -25,6 +25,8 @@ from .passes import SPEED, YAW, Pass
 
 _SAMPLED = 0.05
 """Time between two samples of what reaches the craft, s; a step of the rig if that is longer."""
+_LARGEST = 1.05
+"""Largest share of an order; measured ones overshoot a little and are held to 1."""
 _SETTLING = 20.0
 """How long the first orders act before the record begins, s."""
 _RIG = """\
@@ -64,13 +66,20 @@ def inputs_of(craft: Craft, vehicle: str, variant: str | None, run: Pass) -> Inp
     its mode ``manual``, held to -1 to 1; what pilot and actuators make of them reaches the craft,
     at the steps of the vehicle's rig.
 
-    Raises InputError for an order that is neither, and for inputs that nothing gives.
+    Raises InputError for an order that is neither, for one beyond -1 to 1, and for inputs that
+    nothing gives.
     """
     names = craft.model.u_names
     for name in run.orders:
         if name not in (YAW, SPEED, *names):
             known = [YAW, SPEED, *craft.fed]
             raise InputError(f"{run.path}: {unknown('order', name, known)}")
+        most = float(np.abs(run.orders[name]).max())
+        if name in (YAW, SPEED) and most > _LARGEST:
+            raise InputError(
+                f"{run.path}: {name}: shares from -1 to 1 are needed (helm of 35 deg is 1), found "
+                f"{most:g}"
+            )
     time, replayed = run.record.time, np.zeros((len(run.record.time), len(craft.fed)))
     direct = [name for name in run.orders if name in names]
     lacking = [name for name in craft.fed if name not in direct]

@@ -1,4 +1,4 @@
-"""Study of a vehicle's manoeuvres: its parameters from the logs, with what can be told of them."""
+"""Study of a vehicle's manoeuvres: its parameters from the logs, with how certain they are."""
 
 from __future__ import annotations
 
@@ -14,15 +14,15 @@ from seatrial.model.readable import number
 
 from ..assessment import LEAST_FIT, Verdict, fit
 from .craft import Craft
+from .identifiability import Identifiability, identifiability
 from .intervals import WITHIN, bootstrap, deviations
 from .passes import Pass
 from .prediction import motion_of
 from .problem import Problem, Solution
 from .replay import inputs_of
-from .telling import Told, told_apart
 
 _PRIOR = 0.5
-"""Standard deviation of relative changes while it is not yet known which are told."""
+"""Standard deviation of relative changes while it is not yet known which are identifiable."""
 _TURNED = math.radians(10.0)
 
 
@@ -40,10 +40,10 @@ class Row:
     """Standard deviation, by the information matrix; what it would be, of one that is kept."""
     resampled: float
     """The same by bootstrap; 0 of one that is kept."""
-    told: bool
+    is_identifiable: bool
     """Whether the passes show it; else it keeps its value."""
     partner: str
-    """The parameter that it is hardly told apart from, empty if there is none."""
+    """The parameter that it is hardly separable from, empty if there is none."""
     is_current: bool
     """Whether it is the current of a pass, which no file has."""
 
@@ -86,7 +86,7 @@ class ManoeuvreStudy:
     craft: Craft
     rows: tuple[Row, ...]
     notes: tuple[str, ...]
-    """Which parameters are not told apart, and the combinations that can be had."""
+    """Parameters that are not identifiable, and the combinations that are."""
     shown: tuple[Shown, ...]
     verdicts: tuple[Verdict, ...]
 
@@ -98,7 +98,7 @@ class ManoeuvreStudy:
     @property
     def parameters(self) -> tuple[Row, ...]:
         """Parameters of the vehicle that the passes show."""
-        return tuple(row for row in self.rows if row.told and not row.is_current)
+        return tuple(row for row in self.rows if row.is_identifiable and not row.is_current)
 
 
 def manoeuvre_study(
@@ -109,54 +109,54 @@ def manoeuvre_study(
     Output error: every pass is simulated from its orders alone, and parameters, the current and
     the state at the first row of each pass are chosen so that north, east and heading are nearest
     to those of the log, each weighted by its own residual. Parameters that the passes do not show
-    (`told_apart`) keep the values of the file. Raises InputError as `inputs_of` and `motion_of` do,
-    and if the passes show none.
+    (`identifiability`) keep the values of the file. Raises InputError as `inputs_of` and
+    `motion_of` do, and if the passes show no parameter.
     """
     motions = [
         motion_of(craft, run.record, inputs_of(craft, vehicle, variant, run)) for run in passes
     ]
     problem = Problem(craft, motions, free)
     held = problem.solve(problem.named, problem.guess(), prior=_PRIOR)
-    told = told_apart(held.jacobian, held.residual, problem.stretches, problem.named)
-    if not set(told.told) & set(problem.free):
+    which = identifiability(held.jacobian, held.residual, problem.stretches, problem.named)
+    if not set(which.shown) & set(problem.free):
         raise InputError(
-            f"{', '.join(run.name for run in passes)}: no parameter of {', '.join(free)} is told: "
-            "the manoeuvres do not show them through the noise"
+            f"{', '.join(run.name for run in passes)}: the manoeuvres show no parameter of "
+            f"{', '.join(free)} through the noise"
         )
     start = held.unknowns.copy()
-    start[[problem.named.index(name) for name in told.kept]] = 0.0
-    final = problem.solve(told.told, start, scales=held.scales)
+    start[[problem.named.index(name) for name in which.kept]] = 0.0
+    final = problem.solve(which.shown, start, scales=held.scales)
     start = final.unknowns.copy()
     start[: len(problem.free)] = 0.0
-    currents = [name for name in told.told if name not in problem.free]
+    currents = [name for name in which.shown if name not in problem.free]
     before = problem.solve(currents, start, scales=held.scales)
-    rows = _rows(problem, final, told)
+    rows = _rows(problem, final, which)
     simulated = (problem.readings(each.unknowns) for each in (before, final))
     shown = tuple(
         Shown(run, motion.record.time, motion.measured, old, new)
         for run, motion, old, new in zip(passes, motions, *simulated, strict=True)
     )
-    notes, verdicts = _notes(problem, final, told), _verdicts(craft, rows, shown)
+    notes, verdicts = _notes(problem, final, which), _verdicts(craft, rows, shown)
     return ManoeuvreStudy(vehicle, craft, rows, tuple(notes), shown, tuple(verdicts))
 
 
-def _rows(problem: Problem, final: Solution, told: Told) -> tuple[Row, ...]:
+def _rows(problem: Problem, final: Solution, which: Identifiability) -> tuple[Row, ...]:
     named, craft = problem.named, problem.craft
-    places = [i for i, name in enumerate(named) if name in told.told]
-    kept = [i for i, name in enumerate(problem.free) if name in told.kept]
+    places = [i for i, name in enumerate(named) if name in which.shown]
+    kept = [i for i, name in enumerate(problem.free) if name in which.kept]
     own = [*places, *range(len(named), final.jacobian.shape[1])]
     left = final.jacobian, final.residual, problem.stretches
     by_matrix = deviations(*left, own, kept)
     resampled = bootstrap(final.jacobian[:, own], final.residual, problem.stretches)
     found = {named[place]: (by_matrix[i], resampled[i]) for i, place in enumerate(places)}
-    partners = {pair.second: pair.first for pair in told.pairs}
-    partners |= {pair.first: pair.second for pair in told.pairs if pair.first not in partners}
+    partners = {pair.second: pair.first for pair in which.pairs}
+    partners |= {pair.first: pair.second for pair in which.pairs if pair.first not in partners}
     rows = []
     for place, name in enumerate(named):
         is_current = name not in problem.free
         scale = problem.speed if is_current else craft.parameters[name]
         old = 0.0 if is_current else scale
-        deviation, drawn = found.get(name, (told.kept.get(name, 0.0), 0.0))
+        deviation, drawn = found.get(name, (which.kept.get(name, 0.0), 0.0))
         rows.append(
             Row(
                 name,
@@ -165,7 +165,7 @@ def _rows(problem: Problem, final: Solution, told: Told) -> tuple[Row, ...]:
                 old + scale * float(final.unknowns[place]),
                 abs(scale) * float(deviation),
                 abs(scale) * float(drawn),
-                name in told.told,
+                name in which.shown,
                 partners.get(name, ""),
                 is_current,
             )
@@ -173,17 +173,17 @@ def _rows(problem: Problem, final: Solution, told: Told) -> tuple[Row, ...]:
     return tuple(rows)
 
 
-def _notes(problem: Problem, final: Solution, told: Told) -> list[str]:
-    """Return what is said of unknowns that are kept, and of pairs that are hardly told apart."""
+def _notes(problem: Problem, final: Solution, which: Identifiability) -> list[str]:
+    """Return what is said of unknowns that are kept, and of pairs that are hardly separable."""
     own = set(problem.free)
     scales = dict.fromkeys(problem.named, problem.speed) | problem.craft.parameters
     found, changes = [], dict(zip(problem.named, final.unknowns, strict=False))
-    paired = {pair.second for pair in told.pairs}
-    for name in told.kept:
+    paired = {pair.second for pair in which.pairs}
+    for name in which.kept:
         if name not in paired:
             kept = "keeps the file's value" if name in own else "is taken as 0"
             found.append(f"{name} is not shown by these manoeuvres and {kept}")
-    for pair in told.pairs:
+    for pair in which.pairs:
         first, second = scales[pair.first], scales[pair.second]
         ratio = pair.ratio * first / second
         value = sum(
@@ -192,11 +192,11 @@ def _notes(problem: Problem, final: Solution, told: Told) -> list[str]:
         )
         sign = "-" if ratio > 0.0 else "+"
         half = WITHIN * pair.deviation * abs(first)
-        kept = f"; {pair.second} keeps the file's value" if pair.second in told.kept else ""
+        kept = f"; {pair.second} keeps the file's value" if pair.second in which.kept else ""
         found.append(
-            f"{pair.first} and {pair.second} are hardly told apart (correlation "
+            f"{pair.first} and {pair.second} are hardly separable (correlation "
             f"{pair.correlation:.3f}): {pair.first} {sign} {number(abs(ratio), 3)} {pair.second} = "
-            f"{number(value, 4)} +- {number(half, 2)} can be had{kept}"
+            f"{number(value, 4)} +- {number(half, 2)} is identifiable{kept}"
         )
     return found
 
@@ -206,7 +206,7 @@ def _verdicts(craft: Craft, rows: Sequence[Row], shown: Sequence[Shown]) -> list
     outside = [
         f"{row.name} {number(row.value, 4)}, {number(low, 4)} to {number(high, 4)} is allowed"
         for row in rows
-        if row.told and not row.is_current
+        if row.is_identifiable and not row.is_current
         for low, high in [craft.limits(row.name)]
         if not low <= row.value <= high
     ]

@@ -80,5 +80,5 @@ def _entry(row: Row, logs: str) -> Entry:
     low, high = row.interval
     source = f"identified from {logs}: 95 % interval {number(low, 4)} to {number(high, 4)}"
     if row.partner:
-        source += f"; hardly told apart from {row.partner}"
+        source += f"; hardly separable from {row.partner}"
     return Entry(value=row.value, unit=row.unit, source=source, mark="identified")

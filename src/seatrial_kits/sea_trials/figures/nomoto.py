@@ -7,13 +7,15 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy.interpolate import CubicSpline
+from scipy.signal import lfilter
 
 from seatrial.errors import InputError
 
 from .record import Array, Record
 
-_PARAMETERS = 5
 _ITERATIONS, _CONVERGED = 50, 1e-9
+_EQUAL = 1e-9
+"""Difference of the decays over rows that are equally spaced, but for rounding."""
 
 
 @dataclass(frozen=True)
@@ -64,16 +66,16 @@ def nomoto(record: Record) -> Nomoto:
     T = _first_estimate(record, time)
     for _ in range(_ITERATIONS):
         basis, slopes = _responses(time, record.helm, T)
-        linear = _solved(basis, record.heading)
+        linear = solved(basis, record.heading)
         design = np.column_stack((basis, slopes @ linear))
-        change = float(_solved(design, record.heading - basis @ linear)[-1])
+        change = float(solved(design, record.heading - basis @ linear)[-1])
         T = max(T + change, T / 2.0)
         if abs(change) < _CONVERGED * T:
             break
     else:
         raise InputError("Nomoto's model: no T fits the record; is the vessel of first order?")
     residual = record.heading - basis @ linear
-    deviations = _deviations(_covariance(design, residual), linear)
+    deviations = _deviations(covariance(design, residual), linear)
     rms = float(np.sqrt(np.mean(residual**2)))
     return Nomoto(float(linear[2]), T, float(linear[3] / linear[2]), rms, deviations)
 
@@ -87,7 +89,7 @@ def _deviations(covariance: Array, linear: Array) -> tuple[float, float, float]:
     return K, T, delta_0
 
 
-def _solved(design: Array, wanted: Array) -> Array:
+def solved(design: Array, wanted: Array) -> Array:
     """Return the least-squares solution; raises InputError where it is not unique."""
     scale = np.sqrt((design**2).sum(axis=0))
     solution, _, rank, _ = np.linalg.lstsq(design / scale, wanted, rcond=None)
@@ -97,7 +99,7 @@ def _solved(design: Array, wanted: Array) -> Array:
 
 
 def _first_estimate(record: Record, time: Array) -> float:
-    inverse = float(_solved(_design(record, time), record.heading)[2])
+    inverse = float(solved(_design(record, time), record.heading)[2])
     if inverse <= 0.0:
         raise InputError(f"Nomoto's model: 1/T is {inverse:.3g} 1/s, above 0 is needed")
     return 1.0 / inverse
@@ -110,13 +112,13 @@ def _responses(time: Array, helm: Array, T: float) -> tuple[Array, Array]:
     columns.append(T * (1.0 - decay))
     slopes.append(1.0 - decay * (1.0 + time / T))
     step = time - T * (1.0 - decay)
-    heading, slope = _helm_response(time, helm, T)
+    heading, slope = helm_response(time, helm, T)
     columns += [heading, step]
     slopes += [slope, -slopes[1]]
     return np.column_stack(columns), np.column_stack(slopes)
 
 
-def _helm_response(time: Array, helm: Array, T: float) -> tuple[Array, Array]:
+def helm_response(time: Array, helm: Array, T: float) -> tuple[Array, Array]:
     """Return the heading (n,) by T r' + r = delta from rest, and its derivative by T.
 
     From the equation psi = int delta - T r; its derivative by T, q, obeys T q'' + q' = -r', so
@@ -137,6 +139,8 @@ def _lagged(time: Array, values: Array, T: float) -> Array:
     steps = np.diff(time)
     decay, slopes = np.exp(-steps / T), np.diff(values) / steps
     driven = (values[:-1] - T * slopes) * (1.0 - decay) + slopes * steps
+    if np.ptp(decay) < _EQUAL:
+        return np.concatenate(([0.0], lfilter([1.0], [1.0, -decay[0]], driven)))
     lagged, result = 0.0, [0.0]
     for share, added in zip(decay.tolist(), driven.tolist(), strict=True):
         lagged = lagged * share + added
@@ -155,15 +159,18 @@ def _design(record: Record, time: Array) -> Array:
     return np.column_stack((np.ones_like(time), time, -integral(time), twice, time**2 / 2.0))
 
 
-def _covariance(design: Array, residual: Array) -> Array:
-    """Return the covariance (5, 5) of a least-squares estimate with correlated residuals."""
+def covariance(design: Array, residual: Array) -> Array:
+    """Return the covariance (k, k) of a least-squares estimate with correlated residuals.
+
+    ``design`` (n, k) and ``residual`` (n,); autocorrelation to lags of sqrt(n), Bartlett's weights.
+    """
     scale = np.sqrt((design**2).sum(axis=0))
     design = design / scale
-    rows = len(residual)
+    rows, count = design.shape
     lags = math.isqrt(rows)
-    scatter = np.zeros((_PARAMETERS, _PARAMETERS))
+    scatter = np.zeros((count, count))
     for lag in range(lags + 1):
-        correlation = float(residual[lag:] @ residual[: rows - lag]) / (rows - _PARAMETERS)
+        correlation = float(residual[lag:] @ residual[: rows - lag]) / (rows - count)
         product = design[lag:].T @ design[: rows - lag]
         weight = 1.0 - lag / (lags + 1)
         scatter += weight * correlation * (product if lag == 0 else product + product.T)

@@ -1,4 +1,4 @@
-"""Telling parameters apart: which ones a manoeuvre shows, and what becomes of the others."""
+"""Identifiability of parameters: which ones a manoeuvre shows, and what becomes of the others."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ from seatrial.model.expressions import Vector
 from ..output_error import covariances
 
 CERTAIN = 0.15
-"""Largest standard deviation of a parameter that is told, as a share of the file's value."""
+"""Largest standard deviation of what is identifiable, as a share of the file's value."""
 ALIKE = 0.95
-"""Correlation from which two parameters are hardly told apart."""
+"""Correlation from which two parameters are hardly separable."""
 
 
 @dataclass(frozen=True)
 class Pair:
-    """Two unknowns that are hardly told apart: ``first`` - ``ratio`` ``second`` can be had."""
+    """Two unknowns of which ``first`` - ``ratio`` ``second`` is identifiable, each one hardly."""
 
     first: str
     second: str
@@ -31,38 +31,40 @@ class Pair:
 
 
 @dataclass(frozen=True)
-class Told:
+class Identifiability:
     """Unknowns that the passes show, and those that keep the file's values."""
 
-    told: tuple[str, ...]
+    shown: tuple[str, ...]
     kept: dict[str, float]
     """Relative standard deviation that each would have."""
     pairs: tuple[Pair, ...]
 
 
-def told_apart(
+def identifiability(
     jacobian: Vector, residual: Vector, stretches: Sequence[int], names: Sequence[str]
-) -> Told:
+) -> Identifiability:
     """Return which of the first unknowns, ``names``, the passes show.
 
     Unknowns are relative changes; those behind ``names`` are always looked for. While a standard
     deviation (`covariances`, with the residual's autocorrelation) is above `CERTAIN`, the unknown
     with the largest one is kept at the file's value, paired with the one that it is most
-    correlated with. Of those told, pairs with a correlation above `ALIKE` are named, too.
+    correlated with. Of those shown, pairs with a correlation above `ALIKE` are named, too.
     """
-    told, kept, pairs = list(range(len(names))), {}, []
+    shown, kept, pairs = list(range(len(names))), {}, []
     problem = _Linear(jacobian, residual, stretches, names)
-    while told:
-        deviations = np.sqrt(np.diag(problem.covariance(told)))
+    while shown:
+        deviations = np.sqrt(np.diag(problem.covariance(shown)))
         worst = int(np.argmax(deviations))
         if deviations[worst] <= CERTAIN:
             break
-        kept[names[told[worst]]] = float(deviations[worst])
-        pairs += problem.pair(told, worst)
-        del told[worst]
-    found = [pair for place in range(len(told)) for pair in problem.pair(told, place)]
+        kept[names[shown[worst]]] = float(deviations[worst])
+        pairs += problem.pair(shown, worst)
+        del shown[worst]
+    found = [pair for place in range(len(shown)) for pair in problem.pair(shown, place)]
     alike = {frozenset((pair.first, pair.second)): pair for pair in reversed(found)}
-    return Told(tuple(names[i] for i in told), kept, (*pairs, *reversed(alike.values())))
+    return Identifiability(
+        tuple(names[i] for i in shown), kept, (*pairs, *reversed(alike.values()))
+    )
 
 
 @dataclass(frozen=True)
