@@ -12,7 +12,7 @@ from ..physics.craft.kinematics import cross, specific_force
 from .sensor import ALWAYS_THERE, Measured, Sensor, half_circle
 
 _DEG = math.radians(1.0)
-_ROOM = 298.15
+_STATED_AT = 298.15
 """Temperature at which biases are stated, K."""
 _STEEPEST = math.radians(89.0)
 """Pitch at which the attitude solution is held: beyond it roll has no meaning."""
@@ -102,7 +102,7 @@ class Imu(Sensor):
     acceleration = Input(
         "m/s2", "inertial acceleration of the body origin, body axes", axes="xyz", frame="b"
     )
-    temperature = Input("K", "temperature of the unit", start=_ROOM, optional=True)
+    temperature = Input("K", "temperature of the unit", start=_STATED_AT, optional=True)
     vibration_speed = Input("rad/s", "speed of what vibrates", optional=True)
 
     gyro = Measured(
@@ -180,7 +180,7 @@ class Imu(Sensor):
 
     def measure(self) -> list[float]:
         """Return rates, specific force, roll and pitch."""
-        warmer = self.temperature - _ROOM
+        warmer = self.temperature - _STATED_AT
         gyro = _read(
             self.rates, self.gyro_scale, self.gyro_misalignment, self.gyro_temperature_drift, warmer
         )
