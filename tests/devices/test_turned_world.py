@@ -17,7 +17,7 @@ HEADINGS = {
 }
 ERRORS = (
     *("_noise", "_instability", "_resolution", "_bias", "variation", "deviation"),
-    *("dropout", "delay"),
+    *("dropout", "delay", "multipath"),
 )
 """Ends of the names of sensors' errors, which do prefer a heading or keep what was before."""
 KNOWN = {"fault": "none", "target_valid": True, "leg": 1}
