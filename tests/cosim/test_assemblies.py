@@ -251,7 +251,7 @@ def test_an_inner_rig_runs_alone_with_its_own_step(yard) -> None:
     system = built(Path("harness/rigs/inner/body.toml").resolve())
     assert list(system.parts) == ["body", "push.push"]
     assert system.rig.step_ns == 10_000_000
-    with pytest.raises(InputError, match="step: this key is missing: a rig that runs alone"):
+    with pytest.raises(InputError, match="step: this key is missing, and no rig inside has one"):
         Master(built(Path("harness/rigs/inner/push-one.toml").resolve()))
 
 

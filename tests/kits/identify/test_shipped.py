@@ -44,6 +44,6 @@ def test_a_unit_that_contradicts_the_run_is_refused(tmp_path):
         text.replace('"vehicle.ahrs.euler.psi"', '"vehicle.ahrs.euler.psi", unit = "deg"')
     )
     with pytest.raises(
-        InputError, match=r"vehicle.ahrs.euler.psi': the run has it in rad, not deg"
+        InputError, match=r"vehicle.ahrs.euler.psi': the file has it in rad, not deg"
     ):
         study(load_experiment(str(path)), log)

@@ -44,6 +44,8 @@ FORMATS = Registry(
         "csv": "seatrial.trial.logs.csv_log:CSV",
     },
 )
+_OWN_TIME = "time"
+"""What experiments call the time of a log that has times of its own."""
 _LAST = "csv"
 """Any text with commas looks like it."""
 
@@ -58,7 +60,7 @@ def read_log(path: Path, format_name: str | None = None, time: Column | None = N
     head = _head(path)
     name = format_name or _found(path, head)
     chosen: Format = FORMATS.load(name)
-    if time is not None and not chosen.table:
+    if time is not None and not chosen.table and time.name != _OWN_TIME:
         raise InputError(f"{path}: time: {chosen.title} has times of its own")
     try:
         log = chosen.read(path, time)

@@ -117,7 +117,7 @@ def test_a_log_with_a_gap_is_refused_and_nothing_is_written(folder, tmp_path):
     (tmp_path / "log.csv").write_text("".join(lines[:100] + lines[120:]), "utf-8")
     refused = identify(tmp_path, "--out", "found")
     assert refused.returncode == 2
-    assert "log.csv: time: a gap from" in refused.stderr
+    assert "log.csv, line 101: a gap from" in refused.stderr
     assert not (tmp_path / "found").exists()
 
 
