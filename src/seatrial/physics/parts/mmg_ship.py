@@ -82,6 +82,8 @@ class MmgShip(ThreeDofCraft):
     """
 
     exercised: ClassVar = {
+        "mass": 300.0,  # of the default length and draught; lighter it diverges at long steps
+        "inertia": 30.0,
         "resistance": 0.02,
         "X": [-0.04, 0.002, 0.01, 0.8],
         "Y": [-0.3, 0.08, -1.6, 0.4, -0.4, 0.01],
