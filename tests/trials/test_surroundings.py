@@ -210,7 +210,9 @@ def test_swells_are_a_list(trial, tmp_path):
     assert ship["sea_swell_direction.s1"] == pytest.approx(np.pi / 2)
     assert ship["sea_swell_gamma.s1"] == 7.0
     titles = [title for title, _ in sea_figures(load_run(tmp_path / "run"))]
-    assert any("Hs 0.64" in title for title in titles)  # of both: sqrt(0.5^2 + 0.4^2)
+    assert any(
+        "jonswap and a swell, Hs 0.64" in title for title in titles
+    )  # of both: sqrt(0.5^2 + 0.4^2)
 
 
 def test_a_swell_may_be_alone(trial, tmp_path):

@@ -44,13 +44,13 @@ def edges(indices: range, per_octave: int) -> Array:
 def divided(indices: range, per_octave: int, is_high: Array) -> tuple[list[int], Array]:
     """Return indices and edges of the bands, those that ``is_high`` names in narrow parts.
 
-    Parts are no wider than `NARROW`, and depend on the place of the band alone.
+    Parts are narrower than `NARROW`, and depend on the place of the band alone.
     """
     ends = edges(indices, per_octave)
     keys: list[int] = []
     found: list[Array] = []
     for j, low, high, parts in zip(indices, ends[:-1], ends[1:], is_high, strict=True):
-        wanted = math.ceil((high - low) / NARROW) if parts else 1
+        wanted = math.floor((high - low) / NARROW) + 1 if parts else 1
         count = min(wanted, _MOST_PARTS)
         keys += [_MOST_PARTS * j + i for i in range(count)]
         found.append(low + (high - low) * np.arange(count) / count)

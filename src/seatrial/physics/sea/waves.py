@@ -17,7 +17,7 @@ from .numbers import GRAVITY, Array, Complex, fixed, require_depth, require_posi
 from .spectra import Spectrum, band_energies
 from .spreading import Spreading
 
-_PER_OCTAVE, _HIGH = 20, 0.01
+_PER_OCTAVE, _HIGH = 20, 0.1
 """Bands to the octave, and share of the peak above which they are divided, for hours that vary."""
 
 
@@ -157,26 +157,28 @@ def irregular(
 
     From half the lowest peak to ``high``, rad/s (`lattice.upper_frequency`), widened to whole
     bands. a = sqrt(2 int S dw) over the band, so that m0 of the range is exact; with
-    ``random_amplitudes`` they are Rayleigh-distributed about it. With ``per_octave`` 0 they are so,
-    of bands 20 to the octave, in narrow parts (`lattice.divided`) where the density is above a
-    hundredth of its peak: a Gaussian sea, whose hours differ. Frequency in the band, phase, and
-    one direction each are drawn by ``seed``; trains of another ``kind`` have draws of their own.
-    ``direction`` is where the sea goes to, rad. Raises InputError for an empty range.
+    ``random_amplitudes`` they are Rayleigh-distributed about it. With ``per_octave`` 0 bands are 20
+    to the octave, and where the density is above a tenth of its peak, in narrow parts
+    (`lattice.divided`) of random amplitudes: a Gaussian sea, whose hours differ. Frequency in the
+    band, phase, and one direction each are drawn by ``seed``; trains of another ``kind`` have draws
+    of their own. ``direction`` is where the sea goes to, rad. Raises InputError for an empty range.
     """
     whole = lattice.bands(0.5 * min(spectrum.peaks), high, per_octave or _PER_OCTAVE)
     indices: Sequence[int] = whole
     edges = lattice.edges(whole, per_octave or _PER_OCTAVE)
     energy = band_energies(spectrum, edges)
+    is_random = np.full(len(energy), random_amplitudes)
     if not per_octave:
         density = energy / np.diff(edges)
         indices, edges = lattice.divided(whole, _PER_OCTAVE, density > _HIGH * density.max())
         energy = band_energies(spectrum, edges)
+        is_random = random_amplitudes | (np.diff(edges) < lattice.NARROW)
 
     def drawn(stream: int) -> Array:
         return lattice.draws(kind, seed, stream, indices)
 
-    if random_amplitudes or not per_octave:
-        energy = energy * -np.log1p(-drawn(lattice.AMPLITUDE))
+    if is_random.any():
+        energy = np.where(is_random, energy * -np.log1p(-drawn(lattice.AMPLITUDE)), energy)
     spread = spreading.angle(drawn(lattice.DIRECTION)) if spreading else np.zeros(len(indices))
     return Waves(
         np.sqrt(2.0 * energy),

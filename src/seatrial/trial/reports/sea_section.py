@@ -11,7 +11,7 @@ import numpy as np
 
 from ...errors import InputError
 from ...physics.sea.currents import CurrentState
-from ...physics.sea.seastate import SeaState
+from ...physics.sea.seastate import NONE, SeaState
 from ...physics.sea.spectra import Spectrum, statistics
 from ...physics.sea.winds import WindState
 from ..criteria.expressions import FloatArray
@@ -127,8 +127,12 @@ def _range(sea: SeaState, spectrum: Spectrum) -> tuple[float, float]:
 
 def _spectrum_title(sea: SeaState, spectrum: Spectrum) -> str:
     of_it = statistics(spectrum, *_range(sea, spectrum))
+    swells = len(sea.swells)
+    trains = [] if sea.spectrum == NONE else [sea.spectrum]
+    if swells:
+        trains.append("a swell" if swells == 1 else f"{swells} swells")
     return (
-        f"Spectrum of the waves: {sea.spectrum}, Hs {of_it.height:.3g} m, "
+        f"Spectrum of the waves: {' and '.join(trains)}, Hs {of_it.height:.3g} m, "
         f"Tp {math.tau / spectrum.peaks[0]:.3g} s, Tz {of_it.zero_crossing_period:.3g} s"
     )
 
