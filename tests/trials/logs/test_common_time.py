@@ -116,7 +116,7 @@ def test_positions_without_a_fix_are_left_out():
     )
     found = motion(log, {}, ())
     assert found.time.tolist() == [4.0, 5.0, 6.0, 7.0, 8.0, 9.0]
-    assert found.notes[0] == "4 positions of 0, 0 are left out: the receiver had no fix"
+    assert found.notes[0] == "positions of 0, 0 are left out, 4 of them: the receiver had no fix"
     with pytest.raises(InputError, match="no fix: latitude"):
         motion(
             log_of(

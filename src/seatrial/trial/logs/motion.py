@@ -63,7 +63,7 @@ def _fixes(latitude: Series, longitude: Series) -> tuple[dict[str, Series], tupl
         )
     count = int(np.count_nonzero(~fix))
     return {what: each.at(fix) for what, each in both.items()}, (
-        f"{count} positions of 0, 0 are left out: the receiver had no fix",
+        f"positions of 0, 0 are left out, {count} of them: the receiver had no fix",
     )
 
 

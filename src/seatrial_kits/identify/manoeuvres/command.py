@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 from dataclasses import asdict
 from pathlib import Path
 from typing import Annotated
@@ -57,8 +58,14 @@ def manoeuvres(
     names = [name.strip() for text in free or [] for name in text.split(",")]
     looked_for = craft.free(names)
     passes = [read_pass(log, columns or [], lambda what: _unit(craft, what)) for log in logs]
-    found = manoeuvre_study(vehicle, passes, craft, looked_for, variant)
+    notes = [note for each in passes for note in each.notes]
+    print_notes(notes)
     folder = claim_folder(out, f"{vehicle}-identified", REPORT)
+    try:
+        found = manoeuvre_study(vehicle, passes, craft, looked_for, variant)
+    except BaseException:
+        shutil.rmtree(folder)
+        raise
     file = write_copy(found, folder) if found.accepted else None
     page = write_page(found, folder, file)
     answer.result = {
@@ -66,7 +73,7 @@ def manoeuvres(
         "accepted": found.accepted,
         "vehicle": None if file is None else str(file),
         "parameters": [{**asdict(row), "interval": row.interval} for row in found.rows],
-        "notes": list(found.notes),
+        "notes": [*notes, *found.notes],
         "verdicts": [asdict(verdict) for verdict in found.verdicts],
     }
     _print(found)

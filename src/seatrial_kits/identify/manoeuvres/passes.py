@@ -37,6 +37,8 @@ class Pass:
     orders: Mapping[str, Vector]
     is_held: bool = False
     """Whether orders hold until the next row, as those of a run do; else linear between."""
+    notes: tuple[str, ...] = ()
+    """What its log left out, for a person."""
 
     @property
     def name(self) -> str:
@@ -62,7 +64,7 @@ def read_pass(path: Path, columns: Sequence[str], unit: Callable[[str], str]) ->
     others = [text for text in texts if text.partition("=")[0] not in MOTION]
     named = read_columns(own) if own else {}
     log = read_log(path, None, named.get("time"))
-    record, _ = record_of(log, named)
+    record, notes = record_of(log, named)
     orders = {}
     for text in others:
         what, equals, written = text.partition("=")
@@ -73,7 +75,7 @@ def read_pass(path: Path, columns: Sequence[str], unit: Callable[[str], str]) ->
         orders[what] = _order(log, what, written, unit(what), record.time)
     if record.helm is not None and not any(name != SPEED for name in orders):
         orders[YAW] = record.helm / FULL_HELM
-    return Pass(path, record, orders)
+    return Pass(path, record, orders, notes=tuple(f"{path.name}: {note}" for note in notes))
 
 
 def _order(log: Log, what: str, written: str, unit: str, time: Vector) -> Vector:

@@ -2,11 +2,15 @@
 
 import json
 import tomllib
+from pathlib import Path
 
 import numpy as np
 import pytest
 
+from seatrial.errors import InputError
 from seatrial.system.parameters import load_vehicle
+from seatrial_kits.identify.manoeuvres import command
+from seatrial_kits.identify.manoeuvres.passes import read_pass
 from tests.command import seatrial
 
 from .passes_of import FOLDER
@@ -119,6 +123,34 @@ def test_a_log_with_a_gap_is_refused_and_nothing_is_written(folder, tmp_path):
     assert refused.returncode == 2
     assert "log.csv, line 101: a gap from" in refused.stderr
     assert not (tmp_path / "found").exists()
+
+
+def test_a_folder_that_is_not_empty_is_refused_before_anything_is_fitted(folder, monkeypatch):
+    monkeypatch.chdir(folder)
+    monkeypatch.setattr(command, "manoeuvre_study", lambda *_: pytest.fail("it was fitted"))
+    with pytest.raises(InputError, match="exists and is not an empty folder"):
+        command.manoeuvres("kvlcc2", [Path("log.csv")], list(COLUMNS), out=folder)
+
+
+def test_what_fails_leaves_no_folder(folder, monkeypatch):
+    monkeypatch.chdir(folder)
+
+    def fails(*_):
+        raise InputError("no fit")
+
+    monkeypatch.setattr(command, "manoeuvre_study", fails)
+    with pytest.raises(InputError, match="no fit"):
+        command.manoeuvres("kvlcc2", [Path("log.csv")], list(COLUMNS), out=Path("failed"))
+    assert not (folder / "failed").exists()
+
+
+def test_what_a_log_leaves_out_is_said(tmp_path):
+    rows = np.array([[t, 0.8, 0.1 + 1e-6 * t, 0.0, 0.1 * (t > 20)] for t in np.arange(0, 60.0)])
+    rows[30, 1:3] = 0.0  # no fix
+    head = "time,latitude,longitude,heading,helm"
+    np.savetxt(tmp_path / "fixes.csv", rows, delimiter=",", header=head, comments="")
+    (note,) = read_pass(tmp_path / "fixes.csv", [], lambda what: "1").notes
+    assert note == "fixes.csv: positions of 0, 0 are left out, 1 of them: the receiver had no fix"
 
 
 def test_an_experiment_needs_no_name_of_the_command(tmp_path):
