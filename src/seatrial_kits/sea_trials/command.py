@@ -179,7 +179,10 @@ def _verdicts(done: Done, found: Figures) -> list[Verdict]:
         raise InputError("--criteria: the length of the ship is needed: --length")
     verdicts = imo({criteria_name(done): found}, done.length, approach_speed_of(done, found))
     if not verdicts:
-        raise InputError(f"--criteria: MSC.137(76) has none of {criteria_name(done)}")
+        raise InputError(
+            f"--criteria: MSC.137(76) has none of {criteria_name(done)}, or the record holds no "
+            "figure that it limits"
+        )
     return verdicts
 
 

@@ -95,3 +95,16 @@ def test_a_figure_that_there_is_not_is_refused():
 def test_a_zig_zag_without_a_proper_angle_is_refused(heading):
     with pytest.raises(InputError, match="an angle above 0 up to pi rad"):
         zig_zag(cut(ZIG_ZAG), heading)
+
+
+@pytest.mark.parametrize(
+    ("name", "figures", "message"),
+    [
+        (TURN, turning_circle, "to starboard, and the heading goes to port: .* name it -NAME"),
+        (ZIG_ZAG, lambda r: zig_zag(r, math.radians(10.0)), "to port, .* goes to starboard"),
+    ],
+)
+def test_helm_of_the_opposite_sign_is_refused(name, figures, message):
+    values = changed(name, 4, lambda helm: helm.__imul__(-1.0))
+    with pytest.raises(InputError, match=f"the helm is {message}"):
+        figures(Record(*values))

@@ -13,6 +13,8 @@ from seatrial.errors import InputError
 
 from .record import Array, Record
 
+_CLEAR = math.radians(5.0)
+"""Heading change that is due to the helm."""
 _ROOT = 1e-9
 """Error of a crossing, s."""
 _LATE = 0.1
@@ -117,19 +119,29 @@ def side_of(record: Record, order: float) -> float:
     """Return 1 for a manoeuvre that begins to starboard, -1 to port.
 
     The helm after the order decides; without helm the first heading change of a third of the
-    largest one.
+    largest one. Raises InputError for a record without a turn, and for one that turns by 5 deg
+    against its helm: its helm has the opposite sign.
     """
     after = record.time >= order
+    turned = record.heading[after] - float(record.course_kept(order))
     if record.helm is not None and _is_over(record):
         moved = record.helm
     elif record.helm is not None and np.ptp(record.helm):
         moved = record.helm[after] - record.helm[0]
     else:
-        moved = record.heading[after] - float(record.course_kept(order))
+        moved = turned
     far = np.flatnonzero(np.abs(moved) > np.abs(moved).max() / 3.0)
     if not len(far):
         raise InputError("the record holds no turn: neither helm nor heading changes")
-    return float(math.copysign(1.0, moved[far[0]]))
+    side = math.copysign(1.0, moved[far[0]])
+    clear = np.flatnonzero(np.abs(turned) > _CLEAR)
+    if len(clear) and side * turned[clear[0]] < 0.0:
+        to, away = ("starboard", "port") if side > 0.0 else ("port", "starboard")
+        raise InputError(
+            f"the helm is to {to}, and the heading goes to {away}: helm is positive to turn to "
+            "starboard; in a log of the opposite sign name it -NAME"
+        )
+    return side
 
 
 def _is_over(record: Record) -> bool:
