@@ -44,9 +44,7 @@ def calibrate(
     ] = None,
     checks: Annotated[
         list[Path] | None,
-        typer.Option(
-            "--check", metavar="LOG", help="A log that judges the result and is not fitted."
-        ),
+        typer.Option("--check", metavar="LOG", help="A log to evaluate the result, not fitted."),
     ] = None,
     free: Annotated[
         list[str] | None,
@@ -65,15 +63,15 @@ def calibrate(
     craft = craft_of(vehicle, variant)
     names = [name.strip() for text in free or [] for name in text.split(",")]
     looked_for = craft.free(names)
-    passes, judges = (
+    passes, checked = (
         [read_pass(log, columns or [], lambda what: _unit(craft, what)) for log in each]
         for each in (logs, checks or [])
     )
-    notes = [note for each in (*passes, *judges) for note in each.notes]
+    notes = [note for each in (*passes, *checked) for note in each.notes]
     print_notes(notes)
     folder = claim_folder(out, f"{vehicle}-identified", REPORT)
     try:
-        found = manoeuvre_study(vehicle, passes, craft, looked_for, variant, judges)
+        found = manoeuvre_study(vehicle, passes, craft, looked_for, variant, checked)
     except BaseException:
         shutil.rmtree(folder)
         raise

@@ -66,7 +66,7 @@ class Shown:
     before: Vector
     after: Vector
     is_fitted: bool = True
-    """Whether the parameters were chosen by it; else it judges them."""
+    """Whether the parameters were chosen by it; else it is there to evaluate them."""
 
     def rms(self, simulated: Vector) -> tuple[float, float]:
         """Return the root mean square distance of the track, m, and of the heading, rad."""
@@ -144,10 +144,10 @@ def manoeuvre_study(
     rows = _rows(problem, final, which)
     shown = _shown(problem, passes, before, final)
     if checks:
-        judged = Problem(craft, [motion(run) for run in checks], free)
+        others = Problem(craft, [motion(run) for run in checks], free)
         found = final.unknowns[: len(free)]
-        both = (_followed(judged, each) for each in (np.zeros(len(free)), found))
-        shown += _shown(judged, checks, *both, is_fitted=False)
+        both = (_followed(others, each) for each in (np.zeros(len(free)), found))
+        shown += _shown(others, checks, *both, is_fitted=False)
     notes, verdicts = _notes(problem, final, which), _verdicts(craft, rows, shown)
     return ManoeuvreStudy(vehicle, craft, rows, tuple(notes), shown, tuple(verdicts))
 
