@@ -25,7 +25,7 @@ class MarineEngine(Actuator):
         J omega' = M - Q - F sgn(omega)        F holds a shaft at rest up to |M - Q|
         M_w = K e + I,   I' = K e / T_i,   K = governor_gain M_r / n_r,   e = order n_r - omega
 
-    M follows M_w within these limits, and I is what leaves M_w at M:
+    M is M_w within these limits; I waits while they hold it, and starts anew after M = 0:
 
     - M drives to the side of the order alone, and not against a shaft that turns the other way
       faster than ``reversing_speed`` n_r: a two-stroke engine reverses by starting air at less than
@@ -38,7 +38,7 @@ class MarineEngine(Actuator):
 
     Over a step h the load is held, and M that of its beginning: exact for a constant M - Q. The
     shaft is stable with the propeller where h (K + dQ/domega) < 2 J; dQ/domega is about
-    2 M_r / n_r. ``shaft_order`` is omega as a share of n_r, for a ship with that ``propeller_speed``.
+    2 M_r / n_r. ``shaft_order`` is omega as a share of n_r, the ``propeller_speed`` of a ship.
 
     Failures are those of `Actuator`: no order arrives, and the engine stops; half of M is left; it
     loads ten times as slowly.
@@ -109,13 +109,15 @@ class MarineEngine(Actuator):
         return SIDES[side] * float(self.telegraph_speeds[STEPS.index(step)])
 
     def _governed(self, order: float, h: float) -> float:
-        """Return M, and leave the integral where it gives that."""
+        """Return M; the integral waits while M is limited, and starts anew after M = 0."""
         rated = self._of(self.rated_speed, order)
         error = order * rated - self._speed
         proportional = self.governor_gain * self._of(self.rated_torque, order) / rated * error
-        self._integral += proportional * h / self.governor_time
-        torque = self._limited(order, proportional + self._integral, h)
-        self._integral = torque - proportional if order else 0.0
+        integral = self._integral + proportional * h / self.governor_time
+        wanted = proportional + integral
+        torque = self._limited(order, wanted, h)
+        if torque in (0.0, wanted):
+            self._integral = integral if torque else 0.0
         return torque
 
     def _limited(self, order: float, wanted: float, h: float) -> float:

@@ -63,7 +63,12 @@ def four_quadrant(c: Context, drive: Drive) -> Push:
 
 
 def all_quadrants(
-    diameter: Any, density: Any, n: Any, advance: Any, curves: Sequence[Sequence[Any]], turn: Any = 0
+    diameter: Any,
+    density: Any,
+    n: Any,
+    advance: Any,
+    curves: Sequence[Sequence[Any]],
+    turn: Any = 0,
 ) -> tuple[Any, Any]:
     """Return thrust T, N, and moment Q, N.m, of `four_quadrant` by ``curves`` of C_T* and C_Q*.
 
