@@ -56,8 +56,8 @@ class ThrusterShip(LoadedCraft):
     tau = (X, Y, N): sums of the terms of ``force`` and ``moment``, N and N.m about the body
     origin, in body axes: thrusters, an environmental load; and what a tether or tow does.
 
-    In the sea of a trial nu in M nu' + C(nu) nu and the drag is that through the water, and the loads of waves
-    and wind are added to tau.
+    In the sea of a trial nu in M nu' + C(nu) nu and the drag is that through the water, and the
+    loads of waves and wind are added to tau.
 
     Not modelled: damping at low speed, drag that axes share, thrusters that interact. Without drag
     nothing ever comes to rest by itself.
