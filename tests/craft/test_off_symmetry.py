@@ -13,7 +13,6 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from seatrial.physics.craft.context import Context
-from seatrial.physics.craft.hydrodynamics import TERMS
 from seatrial.physics.craft.marine_craft import MarineCraft
 from seatrial.physics.craft.propellers import propellers
 from seatrial.physics.craft.rov import Rov
@@ -75,10 +74,18 @@ def test_momentum_of_points_changes_by_the_forces_on_them(seed):
         attitude,
         nu,
         **body,
-        **{"force_1": 0.3 * force, "force_2": 0.7 * force, "moment_3": moment},
-        **{"attachment_force": pull, "attachment_place": at, "center_of_buoyancy": buoyant},
-        **{"volume": volume, "buoyancy": 1000 * G * volume, "terms": "restoring coriolis"},
-        **{"water_velocity": rises, "water_acceleration": surging, "water_shear": rises[:2]},
+        force_1=0.3 * force,
+        force_2=0.7 * force,
+        moment_3=moment,
+        attachment_force=pull,
+        attachment_place=at,
+        center_of_buoyancy=buoyant,
+        volume=volume,
+        buoyancy=1000 * G * volume,
+        terms="restoring coriolis",
+        water_velocity=rises,
+        water_acceleration=surging,
+        water_shear=rises[:2],
     )
     omega = nu[3:]
     inwards = np.cross(omega, np.cross(omega, places))
@@ -125,7 +132,7 @@ def test_momentum_of_body_and_water_is_conserved(seed):
 
 @pytest.mark.parametrize("seed", SEEDS)
 def test_a_sphere_meets_the_shear_by_its_velocity_over_depth(seed):
-    # (m + A) v' = rho V a + A (a + s z'), whatever its attitude and rates: s the shear, z' downwards.
+    # (m + A) v' = rho V a + A (a + s z') at any attitude and rates; s the shear, z' downwards.
     draw = np.random.default_rng(seed)
     attitude, R, nu = pose(draw)
     shear, surging, rises = draw.normal(size=2), draw.normal(size=3), draw.normal(size=3)
@@ -133,8 +140,13 @@ def test_a_sphere_meets_the_shear_by_its_velocity_over_depth(seed):
     acceleration, *_ = motion(
         attitude,
         nu,
-        **{"mass": m, "added_mass": [A, A, A, 0, 0, 0], "buoyancy": m * G, "terms": "coriolis"},
-        **{"water_velocity": rises, "water_acceleration": surging, "water_shear": shear},
+        mass=m,
+        added_mass=[A, A, A, 0, 0, 0],
+        buoyancy=m * G,
+        terms="coriolis",
+        water_velocity=rises,
+        water_acceleration=surging,
+        water_shear=shear,
     )
     met = surging + np.append(shear * (R @ nu[:3])[2], 0)
     expected = (m * surging + A * met) / (m + A)
@@ -152,9 +164,12 @@ def test_propellers_push_by_the_speed_at_their_place(seed):
     for sign, faster in itertools.product((-1, 1), (0.3, 30.0)):  # advance ends at 1 / kappa
         both = numbers(
             Rov,
-            **{"propeller_position_1": place, "propeller_direction_1": direction},
-            **{"bollard_thrust": 8 * [full], "advance_loss": 8 * [kappa]},
-            **{"ring_drag": np.multiply(first, ring), "restoring": "submerged"},
+            propeller_position_1=place,
+            propeller_direction_1=direction,
+            bollard_thrust=8 * [full],
+            advance_loss=8 * [kappa],
+            ring_drag=np.multiply(first, ring),
+            restoring="submerged",
             thrust=np.multiply(first, sign * size),
         )
         flow = nu * faster
