@@ -137,9 +137,9 @@ def test_tide_runs_round_its_ellipse():
 @pytest.mark.parametrize("profile", ["power", "linear", "layers"])
 def test_rate_and_slope_of_a_current_are_its_derivatives(profile):
     state = CurrentState(
-        **{"speed": 0.8, "direction": 0.7, "profile": profile, "reach": 25.0, "layers": 2},
-        **{"layer_depths": (2.0, 20.0), "layer_speeds": (1.0, 0.3), "layer_directions": (2.0, 3.0)},
-        **{"tide": 0.6, "tide_axis": -1.0, "tide_minor": 0.2, "tide_period": 600.0, "tide_phase": 0.4},
+        speed=0.8, direction=0.7, profile=profile, reach=25.0, layers=2,
+        layer_depths=(2.0, 20.0), layer_speeds=(1.0, 0.3), layer_directions=(2.0, 3.0),
+        tide=0.6, tide_axis=-1.0, tide_minor=0.2, tide_period=600.0, tide_phase=0.4,
     )  # fmt: skip
     t, z, h = 170.0, 7.0, 1e-2
     velocity, rate, slope = state.at(t, z)
