@@ -153,33 +153,43 @@ def test_a_sphere_meets_the_shear_by_its_velocity_over_depth(seed):
     np.testing.assert_allclose(R @ acceleration, expected, rtol=1e-9, atol=1e-9)
 
 
+def smooth(x):
+    return np.polyval([-2, 3, 0, 0], np.clip(x, 0, 1))
+
+
 @pytest.mark.parametrize("seed", SEEDS)
-def test_propellers_push_by_the_speed_at_their_place(seed):
+def test_propellers_push_by_the_speed_and_depth_at_their_place(seed):
     draw = np.random.default_rng(seed)
     attitude, R, nu = pose(draw)
     place, size = draw.normal(size=3), draw.uniform(2, 9)
     direction = Rotation.random(random_state=seed).apply([1, 0, 0])
-    full, kappa, ring = 10.0, 0.4, 3.0
-    first = [1.0] + [0.0] * 7
-    for sign, faster in itertools.product((-1, 1), (0.3, 30.0)):  # advance ends at 1 / kappa
+    full, kappa, ring, radius = 10.0, 0.4, 3.0, 0.07
+    depth = draw.uniform(-0.4, 1.0) * radius
+    origin = ca.DM([2.0, 5.0, depth - (R @ place)[2]])
+    wet = {"submerged": (1.0, 1.0)}
+    wet["floating"] = smooth((depth / radius + 0.5) / 1.8), smooth(0.5 + depth / radius / 2.2)
+    for sign, faster, kind in itertools.product((-1, 1), (0.3, 30.0), wet):
         both = numbers(
             Rov,
             propeller_position_1=place,
             propeller_direction_1=direction,
             bollard_thrust=8 * [full],
             advance_loss=8 * [kappa],
-            ring_drag=np.multiply(first, ring),
-            restoring="submerged",
-            thrust=np.multiply(first, sign * size),
+            propeller_radius=8 * [radius],
+            ring_drag=[ring] + 7 * [0],
+            restoring=kind,
+            thrust=[sign * size] + 7 * [0],
         )
         flow = nu * faster
         v = flow[:3] + np.cross(flow[3:], place)
-        context = Context(ca.DM(3, 1), attitude, ca.DM(R), flow, ca.DM(flow), None, both, both)
-        advance = np.clip(sign * direction @ v, -1.0, 1 / kappa)
-        pushed = sign * (size - kappa * math.sqrt(size * full) * advance)
-        force = pushed * direction - ring * max(flow[0], 0.0) * np.array([0, v[1], v[2]])
+        context = Context(origin, attitude, ca.DM(R), flow, ca.DM(flow), None, both, both)
+        advance = np.clip(sign * direction @ v, -1.0, 1 / kappa)  # no thrust is left beyond
+        pushed = sign * (size - kappa * math.sqrt(size * full) * advance) * wet[kind][0]
+        dragged = ring * max(flow[0], 0.0) * np.array([0, v[1], v[2]]) * wet[kind][1]
+        force = pushed * direction - dragged
         expected = [*force, *np.cross(place, force)]
-        np.testing.assert_allclose(np.array(propellers(context)).ravel(), expected, rtol=1e-6)
+        found = np.array(propellers(context)).ravel()
+        np.testing.assert_allclose(found, expected, rtol=1e-6, atol=1e-9)
 
 
 # ------------------------------------------------------------------ waves
