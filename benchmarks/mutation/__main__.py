@@ -130,7 +130,7 @@ def costs(each: dict, path: str) -> float:
     return each["seconds"] * sum(map(len, each["lines"].values())) / len(each["lines"][path])
 
 
-def judged(mutant: Mutant, by_file: dict[str, dict], seed: int) -> dict:
+def evaluated(mutant: Mutant, by_file: dict[str, dict], seed: int) -> dict:
     """Return what the tests made of a mutant."""
     at = statement((COPY / mutant.path).read_bytes(), mutant.line)
     files = [name for name, each in by_file.items() if at & set(each["lines"].get(mutant.path, ()))]
@@ -153,7 +153,7 @@ def judged(mutant: Mutant, by_file: dict[str, dict], seed: int) -> dict:
 
 
 def main() -> None:
-    """Draw mutants, judge those that are not yet, print the score and the survivors."""
+    """Draw mutants, evaluate those that are not yet, print the score and the survivors."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("--count", type=int, required=True, help="number of mutants")
     parser.add_argument("--seed", type=int, required=True, help="seed of the draw")
@@ -169,7 +169,7 @@ def main() -> None:
         key = f"{mutant.path} {digest(source)} {mutant.start} {mutant.end} {mutant.text}"
         record = known.get(key, {})
         if record.get("outcome") not in KILLED and record.get("suite") != suite:
-            record = judged(mutant, by_file, chosen.seed)
+            record = evaluated(mutant, by_file, chosen.seed)
             remember(path, {"key": key, "suite": suite, **record})
         outcomes[record["outcome"]] += 1
         print(f"{number}/{len(sample)} {mutant.path}:{mutant.line} {record['outcome']}", flush=True)

@@ -1,11 +1,7 @@
-"""Craft off every symmetry, at random poses and rates: momentum, momentum of the water, the wind.
-
-Equations are evaluated with numbers in the place of CasADi's symbols, which needs no compiler.
-"""
+"""Craft off every symmetry, at random poses and rates: momentum, momentum of the water, the wind."""
 
 import itertools
 import math
-from types import SimpleNamespace
 
 import casadi as ca
 import numpy as np
@@ -21,17 +17,10 @@ from seatrial.physics.craft.wave_hull import WaveHull
 from seatrial.physics.sea.strips import Strips
 from tests.sea.references import content, table
 
+from .numerically import numbers, pose
+
 G = 9.81
 SEEDS = range(4)
-
-
-def numbers(kind, **values):
-    """Return inputs and parameters of a class: 0 and as declared, but for ``values``."""
-    ports = [port for port in kind.ports.values() if port.kind in ("input", "parameter")]
-    given = {port.name: port.start if port.axes else port.start[0] for port in ports} | values
-    return SimpleNamespace(
-        **{name: v if isinstance(v, str) else ca.DM(np.array(v)) for name, v in given.items()}
-    )
 
 
 def motion(attitude, nu, depth=50.0, **values):
@@ -41,12 +30,6 @@ def motion(attitude, nu, depth=50.0, **values):
     changes, outputs = six_dof_motion(place, ca.DM(attitude), ca.DM(nu), both, both)
     found = (outputs["acceleration"], changes.rates, changes.position, changes.attitude)
     return [np.array(each).ravel() for each in found]
-
-
-def pose(draw):
-    """Return attitude, rotation {b} to {n} and nu, at random."""
-    attitude = draw.uniform((-3, -1.3, -3), (3, 1.3, 3))
-    return attitude, Rotation.from_euler("ZYX", attitude[::-1]).as_matrix(), draw.normal(size=6)
 
 
 def masses(draw):
