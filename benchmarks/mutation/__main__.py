@@ -18,7 +18,6 @@ import ast
 import hashlib
 import json
 import random
-import sys
 from collections import Counter
 from pathlib import Path
 
@@ -140,7 +139,6 @@ def evaluated(mutant: Mutant, by_file: dict[str, dict], seed: int) -> dict:
     limit = 30 + 3 * round(sum(by_file[name]["seconds"] for name in files))
 
     def action() -> int:
-        sys.dont_write_bytecode = True
         return tests(files[:FIRST], seed) or (tests(files[FIRST:], seed) if files[FIRST:] else 0)
 
     with mutated(mutant):

@@ -55,7 +55,7 @@ def begin() -> None:
 
 @contextlib.contextmanager
 def mutated(mutant: Mutant) -> Iterator[None]:
-    """Change a file of the copy for a while; its compiled module, older, is not taken."""
+    """Change a file of the copy for a while; its time tells compiled modules of it apart."""
     path = COPY / mutant.path
     source, times = path.read_bytes(), path.stat()
     path.write_bytes(mutant.applied(source))
