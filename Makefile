@@ -5,6 +5,9 @@ BIN := $(VENV)/bin
 INSTALLED := $(VENV)/.installed
 DOCS := $(VENV)/.docs-installed
 FUZZ := $(VENV)/.fuzz-installed
+MUTATE := $(VENV)/.mutate-installed
+COUNT ?= 600
+SEED ?= 2026
 RELEASE := build/release
 TOOLS := $(VENV)-release
 NODE_TOOLS := tests/interop/node/node_modules/.installed
@@ -12,7 +15,7 @@ NODE_TOOLS := tests/interop/node/node_modules/.installed
 # the environment says: hundreds of tests start processes.
 PYTEST := OPENBLAS_NUM_THREADS=1 PYTHONDONTWRITEBYTECODE= $(BIN)/python -m pytest -n auto --dist worksteal
 
-.PHONY: demo test test-interop test-long test-firmware fuzz lint docs fmus benchmark release clean
+.PHONY: demo test test-interop test-long test-firmware fuzz mutate lint docs fmus benchmark release clean
 
 $(INSTALLED): pyproject.toml
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \
@@ -64,6 +67,15 @@ fuzz: $(FUZZ)
 
 $(FUZZ): $(INSTALLED)
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[fuzz]'
+	@touch $@
+
+# COUNT changes of equations, drawn by SEED: does a test fail of each? Hours; it goes on where it was
+# interrupted. What it is and what it found: docs/decisions/mutation-check.md.
+mutate: $(MUTATE)
+	OPENBLAS_NUM_THREADS=1 nice -n 10 $(BIN)/python -m benchmarks.mutation --count $(COUNT) --seed $(SEED)
+
+$(MUTATE): $(INSTALLED)
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[mutate]'
 	@touch $@
 
 lint: $(INSTALLED)

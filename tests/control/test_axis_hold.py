@@ -57,16 +57,19 @@ def test_it_begins_where_the_first_valid_measurement_is(kind, axis):
 
 
 def test_own_damping_is_added_by_speed():
-    """Full ahead for long: D = 2 + 17 |2.16|, for the moving target and in the position gain."""
+    """Full ahead for long: D = 2 + 17 |2.16|, for the moving target and in the gains."""
     more = {"damping": 2.0, "damping_per_speed": 17.0, "damping_rate": 1.2, "surge": 93.4}
-    hold = depth(**more, depth_wanted=2.0, depth=2.0, integral_pole=0.0, rate_limit=0.3)
+    hold = depth(**more, depth_wanted=2.0, depth=2.0, rate_limit=0.3)
     hold.advance(0.0, 60.0)
     D = 2.0 + 17.0 * 2.16
     hold.set("depth_wanted", 5.0)
-    moving = m * 2 * zeta * w * 0.3 + D * 0.3
+    moving = KD * 0.3 + D * 0.3
     assert hold.get("heave") == pytest.approx(moving)
     hold.advance(60.0, 0.1)
-    assert hold.get("heave") == pytest.approx(moving + (m * w**2 + 1.2 * D) * 0.03)
+    assert hold.get("heave") == pytest.approx(moving + (KP + 1.2 * D) * 0.03)
+    hold.advance(60.1, 0.1)
+    learnt = (KI + 1.2 * sigma * D) * 0.03 * 0.1
+    assert hold.get("heave") == pytest.approx(moving + (KP + 1.2 * D) * 0.06 + learnt)
 
 
 def test_speed_is_estimated_from_the_surge_force():

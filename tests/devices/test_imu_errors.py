@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
+from seatrial.devices.ahrs import Ahrs
 from seatrial.devices.imu import Imu
 
 from .ideal import ideal
@@ -138,6 +139,34 @@ def test_slow_rolling_is_followed_and_a_true_tilt_kept():
     times = np.arange(len(solution)) * 0.01
     np.testing.assert_allclose(solution[:, 0], a * np.sin(w * times), atol=2e-3)
     np.testing.assert_allclose(solution[:, 1], 0.1, atol=1e-3)
+
+
+def test_a_tumbling_unit_knows_its_attitude_by_its_gyro():
+    attitude, rates = np.array([0.5, -0.6, 1.0]), np.array([0.4, 0.3, -0.5])
+    imu = ideal(Imu, period=1e-3, attitude_time=1e9, attitude=attitude, rates=rates)
+    (solution,) = read(imu, 2.0, lambda ms: {}, ["roll_pitch"], step_ms=1)
+    turned = Rotation.from_euler("ZYX", attitude[::-1]) * Rotation.from_rotvec(2.0 * rates)
+    # Steps of Euler: h of it.
+    np.testing.assert_allclose(solution[-1], turned.as_euler("ZYX")[:0:-1], atol=2e-3)
+
+
+@pytest.mark.parametrize("attitude", [(0.7, 0.5, 1.0), (-2.5, -1.2, 0.0), (2.8, 0.3, -2.0)])
+def test_any_tilt_at_rest_is_that_of_gravity(attitude):
+    imu = ideal(Imu, attitude_time=1.0, attitude=attitude)
+    (solution,) = read(imu, 3.0, lambda ms: {}, ["roll_pitch"])
+    np.testing.assert_allclose(solution[-1], attitude[:2], atol=1e-12)
+
+
+@pytest.mark.parametrize("kind", [Imu, Ahrs])
+def test_members_of_one_axis_are_of_the_axis_that_their_name_says(kind):
+    motion = {"rates": (0.1, 0.2, 0.3), "attitude": (0.4, 0.5, 0.6)}
+    unit = ideal(kind, **{name: v for name, v in motion.items() if name in kind.ports})
+    axes = {"roll_rate": 0.1, "yaw_rate": 0.3, "heel": 0.4, "pitch": 0.5, "heading": 0.6}
+    for member, name in kind.terminals["reading"].members.items():
+        if member in axes:
+            port, _, axis = name.partition(".")
+            value = unit.get(port)[kind.ports[port].axes.index(axis)]
+            assert value == pytest.approx(axes[member]), member
 
 
 def test_a_dead_gyro_does_not_reach_the_solution():

@@ -39,6 +39,17 @@ def test_the_sea_of_a_trial_carries_it():
     assert after(buoy, 10) == pytest.approx([0, 5, 0])
 
 
+@pytest.mark.parametrize("kind", [Buoy, MovingObstacle])
+def test_a_stream_that_turns_is_met_in_the_middle_of_a_step(kind):
+    # U sin(w t) over one step: 1 - cos(w h); the middle has that but for (w h)^2 / 24.
+    w, h = math.tau / 1000, 50.0
+    tide = {"current_tide": 2.0, "current_tide_period": 1000.0, "current_tide_phase": -math.pi / 2}
+    drifting = started(kind, **tide, **({"swing": -1.0} if kind is Buoy else {}))
+    drifting.advance(0.0, h)
+    north = 2.0 / w * (1 - math.cos(w * h))
+    assert abs(drifting.get("position")[0]) == pytest.approx(north, rel=(w * h) ** 2 / 20)
+
+
 def test_held_where_it_is():
     assert after(started(Buoy, anchor=[7, 8], current=[1, 1]), 10) == [7, 8, 0]
 

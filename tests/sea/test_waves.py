@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from scipy.stats import kstest
 
 from seatrial.errors import InputError
 from seatrial.physics.sea.lattice import upper_frequency
@@ -85,17 +86,15 @@ def test_a_component_depends_on_its_band_and_seed_alone():
     assert not (other.phase == narrow.phase).any()
 
 
-def test_random_amplitudes_have_the_energy_on_average():
-    energies = [
-        0.5
-        * np.square(
-            irregular(SEA, direction=0, seed=s, high=8.0, random_amplitudes=True).amplitude
-        ).sum()
-        for s in range(40)
+def test_random_amplitudes_are_rayleigh_distributed_about_the_spectrums():
+    fixed = irregular(SEA, direction=0, seed=1, high=8.0, per_octave=50).amplitude
+    drawn = [
+        irregular(SEA, direction=0, seed=s, high=8.0, per_octave=50, random_amplitudes=True)
+        for s in range(15)
     ]
-    whole = moment(SEA, 0, 0.77, 8.0)
-    assert np.mean(energies) == pytest.approx(whole, rel=0.15)
-    assert np.std(energies) > 0.1 * whole
+    energies = np.square(np.concatenate([sea.amplitude / fixed for sea in drawn]))
+    assert len(energies) > 2000
+    assert kstest(energies, "expon").pvalue > 0.01
 
 
 def test_slopes_of_a_realisation_are_those_of_the_spectrum():

@@ -17,6 +17,7 @@ from seatrial.physics.sea.current import (
     towards,
     wind_driven,
 )
+from seatrial.physics.sea.currents import CurrentState
 from seatrial.physics.sea.drift import mean_drift, slow_drift
 from seatrial.physics.sea.quadrature import integrals
 from seatrial.physics.sea.wind_loads import (
@@ -131,6 +132,30 @@ def test_tide_runs_round_its_ellipse():
     tide = Tide(44714.164, 1.0, math.pi / 2, minor=0.2)
     assert tide.at(0.0) == pytest.approx([0.0, 1.0], abs=1e-15)
     assert tide.at(44714.164 / 4) == pytest.approx([-0.2, 0.0], abs=1e-12)
+
+
+@pytest.mark.parametrize("profile", ["power", "linear", "layers"])
+def test_rate_and_slope_of_a_current_are_its_derivatives(profile):
+    state = CurrentState(
+        speed=0.8, direction=0.7, profile=profile, reach=25.0, layers=2,
+        layer_depths=(2.0, 20.0), layer_speeds=(1.0, 0.3), layer_directions=(2.0, 3.0),
+        tide=0.6, tide_axis=-1.0, tide_minor=0.2, tide_period=600.0, tide_phase=0.4,
+    )  # fmt: skip
+    t, z, h = 170.0, 7.0, 1e-2
+    velocity, rate, slope = state.at(t, z)
+    np.testing.assert_array_equal(velocity, state.velocity(t, z))
+    late, early = state.velocity(t + h, z), state.velocity(t - h, z)
+    np.testing.assert_allclose(rate, (late - early) / (2 * h), rtol=1e-6)
+    below, above = state.velocity(t, z + h), state.velocity(t, z - h)
+    np.testing.assert_allclose(slope, (below - above) / (2 * h), rtol=1e-5)
+    swing = 0.4 + math.tau * t / 600.0
+    tidal = (0.6 * math.cos(swing) + 0.2j * math.sin(swing)) * np.exp(-1j)
+    stream = {
+        "power": 0.8 * (18 / 25) ** (1 / 7) * np.exp(0.7j),
+        "linear": 0.8 * 18 / 25 * np.exp(0.7j),
+    }
+    stream["layers"] = 13 / 18 * np.exp(2j) + 5 / 18 * 0.3 * np.exp(3j)
+    assert complex(*velocity) == pytest.approx(tidal + stream[profile], rel=1e-12)
 
 
 def test_slow_variation_is_stationary_and_keyed():

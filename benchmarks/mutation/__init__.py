@@ -1,0 +1,1 @@
+"""Mutation check of the equations: changes that a test must notice, and what noticed them."""
