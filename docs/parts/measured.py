@@ -1,4 +1,4 @@
-"""Tables of what the real vehicles do beside the models, of the figures that docs/measured.py kept."""
+"""Tables of the real vehicles beside the models, of the figures that docs/measured.py has kept."""
 
 from __future__ import annotations
 
