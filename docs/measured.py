@@ -1,4 +1,4 @@
-"""Figures of the models that were published of the real vehicles: ``python docs/measured.py otter``.
+"""Figures of the models that were published of the real ones: ``python docs/measured.py otter``.
 
 ``docs/vehicles/sea-trials/measured.toml`` says what was published of each vehicle, and how its rig
 is run for the same figure. The values go to ``measured.json`` beside it, from which docs/tables.py
