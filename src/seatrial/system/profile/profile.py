@@ -225,6 +225,9 @@ class Profiles:
     def find(self, written: str, where: str) -> tuple[Profile, str]:
         """Return the profile and the section of "SECTION" or "PROFILE:SECTION".
 
+        A link ``links.KIND?`` that the profile does not have is one of that kind with its own
+        values, and what identity, home, actuators and sensors say.
+
         Raises InputError, which begins with ``where``, if there is no profile to look in, or no
         such section in it: an autopilot may need what a vehicle's profile lacks.
         """
@@ -235,6 +238,11 @@ class Profiles:
                 f"'hydrone:{written}'"
             )
         profile = self._load(name if colon else str(self._own))
+        if section.endswith("?"):
+            section = section.removesuffix("?")
+            profile.file.links.setdefault(
+                section.removeprefix("links."), {"kind": section.removeprefix("links.")}
+            )
         if section not in profile.sections():
             raise InputError(f"{where}: {profile.lacks(section)}")
         return profile, section

@@ -1,0 +1,57 @@
+"""Definitions of messages and services: the store of rosbags, and the files in ``interfaces``.
+
+A service ``package/srv/Name`` has two messages, ``package/msg/Name_Request`` and ``..._Response``
+in the store, each with the header that rmw_cyclonedds puts before the fields.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from seatrial.errors import InputError
+
+INSTALL = 'pip install "seatrial[ros2]"'
+FOLDER = Path(__file__).parent / "interfaces"
+_HEADER = "uint64 client_guid\nint64 sequence_number\n"
+_PARTS = ("_Request", "_Response")
+
+
+@cache
+def type_store() -> Any:
+    """Return the store of ROS 2 Humble's types, with those of `FOLDER`.
+
+    The fields of those messages are the same in later distributions. Raises InputError without
+    the package rosbags.
+    """
+    try:
+        from rosbags.typesys import Stores, get_types_from_msg, get_typestore
+    except ImportError:
+        raise InputError(f"ROS 2 needs rosbags, which is not installed: {INSTALL}") from None
+    store = get_typestore(Stores.ROS2_HUMBLE)
+    found: dict[str, Any] = {}
+    for file in sorted(FOLDER.glob("*/msg/*.msg")):
+        found |= get_types_from_msg(file.read_text(), _name(file))
+    for file in sorted(FOLDER.glob("*/srv/*.srv")):
+        for part, text in zip(_PARTS, file.read_text().split("---\n"), strict=True):
+            found |= get_types_from_msg(_HEADER + text, _name(file) + part)
+    store.register(found)
+    return store
+
+
+def service_parts(kind: str) -> tuple[str, str]:
+    """Return the names in the store of a service's request and response."""
+    package, _, name = kind.split("/")
+    return f"{package}/msg/{name}_Request", f"{package}/msg/{name}_Response"
+
+
+def dds_name(kind: str) -> str:
+    """Return the name of a type in DDS, ``package::msg::dds_::Name_``."""
+    package, _, name = kind.split("/")
+    group = "srv" if name.endswith(_PARTS) else "msg"
+    return f"{package}::{group}::dds_::{name}_"
+
+
+def _name(file: Path) -> str:
+    return f"{file.parent.parent.name}/msg/{file.stem}"

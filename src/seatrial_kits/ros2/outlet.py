@@ -1,0 +1,95 @@
+"""Outlet of messages: which are due at an instant, and their writers."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+from seatrial.model.component import NS
+
+from .message import message
+from .participant import Durability, Participant, Writer
+from .ports import Ros2Ports
+from .published import MEASURED, Fields, Here, leg, odometry, places, transforms
+from .topics import LATCHED, PUBLISHED, Names
+
+_OVERDUE = 1.5
+"""Periods of a sensor after which a measurement that did not change is written again."""
+
+
+class Outlet:
+    """Writers of one vehicle's topics, made as there is something to write.
+
+    The clock goes out at every instant, the truth every ``truth_period``, a measurement when it
+    changes, and `_OVERDUE` periods of its sensor after that: one that is stuck is seen.
+    """
+
+    def __init__(self, participant: Participant, names: Names) -> None:
+        self._participant, self._names = participant, names
+        self._writers: dict[str, Writer | None] = {}
+        self._last: dict[str, tuple[Fields, int]] = {}
+        self._truth_ns, self._leg = -(10**18), 0
+        self._written: list[tuple[Writer, Any]] = []
+        """What the last instant wrote."""
+
+    def write(self, link: Ros2Ports, here: Here) -> None:
+        """Write what is due."""
+        self._written = []
+        for key, fields in self._due(link, here):
+            self.put(key, fields)
+
+    def put(self, key: str, fields: Fields) -> None:
+        """Write one message, if its topic is not off."""
+        writer = self._writer(key)
+        if writer is not None:
+            made = message(writer.kind, fields)
+            writer.write(made)
+            self._written.append((writer, made))
+
+    def write_again(self) -> None:
+        """Write once more what the last instant wrote."""
+        for writer, made in self._written:
+            writer.write(made)
+
+    def matches(self) -> int:
+        """Return the number of readers of all topics."""
+        made = (each for each in self._writers.values() if each is not None)
+        return sum(len(each.dds.get_matched_subscriptions()) for each in made)
+
+    def _due(self, link: Ros2Ports, here: Here) -> Iterator[tuple[str, Fields]]:
+        now = here.now_ns
+        if "tf_static" not in self._writers:
+            yield "tf_static", places(link, here)
+        # The clock first: whoever follows it has it before what is stamped with it.
+        yield "clock", {"clock": now}
+        if now - self._truth_ns >= round(link.truth_period * NS):
+            self._truth_ns = now
+            yield "odometry", odometry(link, here)
+            yield "tf", transforms(link, here)
+        course = leg(link, here)
+        if course is not None and self._leg != link.leg:
+            self._leg = link.leg
+            yield "leg", course
+        for key, make in MEASURED.items():
+            fields = make(link, here)
+            if fields is not None and self._is_new(key, fields, here):
+                yield key, fields
+
+    def _is_new(self, key: str, fields: Fields, here: Here) -> bool:
+        measured = {name: value for name, value in fields.items() if name != "header"}
+        last, at = self._last.get(key, ({}, 0))
+        overdue = here.now_ns - at >= _OVERDUE * here.instruments.period_ns(key)
+        if repr(measured) == repr(last) and not overdue:
+            return False
+        self._last[key] = measured, here.now_ns
+        return True
+
+    def _writer(self, key: str) -> Writer | None:
+        if key not in self._writers:
+            topic = PUBLISHED[key]
+            name = self._names.of(key, topic)
+            durability: Durability = "latched" if key in LATCHED else "volatile"
+            self._writers[key] = (
+                None if name is None else self._participant.writer(name, topic.kind, durability)
+            )
+        return self._writers[key]
