@@ -29,9 +29,10 @@ class Commands:
         self._said: set[str] = set()
         self._velocity = VelocityOrders()
         self.watched: dict[str, Watched] = {}
+        full = (*link.full_force, link.full_moment)
         for key, topic in COMMANDED.items():
             name = names.of(key, topic)
-            if name is not None and (key != "cmd_wrench" or any(link.full_wrench)):
+            if name is not None and (key != "cmd_wrench" or any(full)):
                 self.watched[key] = Watched(participant, name, topic.kind, link.timeout, say)
         self.actuators = actuators(link)
         for each in self.actuators:
@@ -41,6 +42,11 @@ class Commands:
                     kind = ACTUATORS[way].kind
                     key = f"{each.name}.{way}"
                     self.watched[key] = Watched(participant, full, kind, link.timeout, say)
+
+    @property
+    def read(self) -> dict[str, str]:
+        """Types of the topics that are read, by name."""
+        return {each.name: each.kind for each in self.watched.values()}
 
     @property
     def refused(self) -> int:
@@ -93,7 +99,7 @@ class Commands:
             self._once(goal)
             return "none", Orders()
         if key == "cmd_wrench":
-            return key, wrench_orders(message.wrench, link.full_wrench)
+            return key, wrench_orders(message.wrench, (*link.full_force, link.full_moment))
         twist = message.twist if key == "cmd_vel_stamped" else message
         if twist.linear.y:
             self._once(f"{valid[key].name}: linear.y is not followed: this pilot has no sway")

@@ -18,6 +18,7 @@ from seatrial.model.sampled import Sampled
 from .commands import Commands
 from .instruments import Instruments
 from .lockstep import Lockstep, awaited
+from .mismatches import Mismatches
 from .outlet import Outlet
 from .participant import Participant
 from .ports import ANGLED, CHANNELS, SHARED, Ros2Ports
@@ -58,7 +59,14 @@ class Ros2(Ros2Ports):
     """
 
     rolls_back = False
-    transient = Sampled.transient | {"_participant", "_outlet", "_commands", "_lockstep", "_names"}
+    transient = Sampled.transient | {
+        "_participant",
+        "_outlet",
+        "_commands",
+        "_lockstep",
+        "_names",
+        "_mismatches",
+    }
 
     def __init__(self, name: str = "component") -> None:
         super().__init__(name)
@@ -81,6 +89,7 @@ class Ros2(Ros2Ports):
         self._field = earth_field(*place, 1e-6 * boot_us)
         self._instruments = Instruments(read_instruments(self.instruments))
         self._outlet = Outlet(self._participant, self._names)
+        self._mismatches = Mismatches(self._participant, self._say)
         self._lockstep: Lockstep | None = None
         self._orders, self._source, self._reached = Orders(), "none", 0
         self._direct: dict[str, float] | None = None
@@ -118,6 +127,7 @@ class Ros2(Ros2Ports):
         commands.take_newest(t, now_ns, but=waited)
         if self._lockstep is not None:
             self._lockstep.wait(t, now_ns, self._outlet.write_again)
+        self._mismatches.look(commands.read, self._outlet.written, self._outlet.latched)
         self._follow(commands, t)
         place = self.position_n if is_connected(*self.position_n) else self.true_position
         if self.leg and math.dist(place[:2], self.leg_to[:2]) <= (self.leg_radius or _LEG_RADIUS):

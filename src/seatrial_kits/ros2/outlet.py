@@ -21,7 +21,9 @@ class Outlet:
     """Writers of one vehicle's topics, made as there is something to write.
 
     The clock goes out at every instant, the truth every ``truth_period``, a measurement when it
-    changes, and `_OVERDUE` periods of its sensor after that: one that is stuck is seen.
+    changes, and `_OVERDUE` periods of its sensor after that: one that is stuck is seen. In an
+    instant the clock comes last, and odometry before it: a node that a timer or the odometry
+    wakes has been sent all else.
     """
 
     def __init__(self, participant: Participant, names: Names) -> None:
@@ -51,6 +53,16 @@ class Outlet:
         for writer, made in self._written:
             writer.write(made)
 
+    @property
+    def written(self) -> dict[str, str]:
+        """Types of the topics that are written, by name."""
+        return {each.name: each.kind for each in self._writers.values() if each is not None}
+
+    @property
+    def latched(self) -> frozenset[str]:
+        """Names of the topics that are kept for late readers."""
+        return frozenset(each.name for key in LATCHED if (each := self._writers.get(key)))
+
     def matches(self) -> int:
         """Return the number of readers of all topics."""
         made = (each for each in self._writers.values() if each is not None)
@@ -60,12 +72,6 @@ class Outlet:
         now = here.now_ns
         if "tf_static" not in self._writers:
             yield "tf_static", places(link, here)
-        # The clock first: whoever follows it has it before what is stamped with it.
-        yield "clock", {"clock": now}
-        if now - self._truth_ns >= round(link.truth_period * NS):
-            self._truth_ns = now
-            yield "odometry", odometry(link, here)
-            yield "tf", transforms(link, here)
         course = leg(link, here)
         if course is not None and self._leg != link.leg:
             self._leg = link.leg
@@ -74,6 +80,11 @@ class Outlet:
             fields = make(link, here)
             if fields is not None and self._is_new(key, fields, here):
                 yield key, fields
+        if now - self._truth_ns >= round(link.truth_period * NS):
+            self._truth_ns = now
+            yield "tf", transforms(link, here)
+            yield "odometry", odometry(link, here)
+        yield "clock", {"clock": now}
 
     def _is_new(self, key: str, fields: Fields, here: Here) -> bool:
         measured = {name: value for name, value in fields.items() if name != "header"}

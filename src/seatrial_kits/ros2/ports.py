@@ -77,12 +77,15 @@ class Ros2Ports(Reachable, TrueMotion, Sampled):
     steering_travel = Parameter(
         0.0, "rad", "angle of actuators that steer at their greatest pulse; 0: none do", min=0.0
     )
-    full_wrench = Parameter(
+    full_force = Parameter(
         0.0,
-        ("N", "N", "N", "N.m"),
-        "wrench at full manual control: ahead, to starboard, down, turn to starboard; 0: none",
-        axes=("X", "Y", "Z", "N"),
+        "N",
+        "force at full manual control: ahead, to starboard, down; 0: none",
+        axes="xyz",
         min=0.0,
+    )
+    full_moment = Parameter(
+        0.0, "N.m", "moment at full manual control, to starboard; 0: none", min=0.0
     )
     actuators = Parameter(
         "",
