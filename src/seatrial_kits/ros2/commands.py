@@ -29,10 +29,10 @@ class Commands:
         self._said: set[str] = set()
         self._velocity = VelocityOrders()
         self.watched: dict[str, Watched] = {}
-        full = (*link.full_force, link.full_moment)
+        wrench = (*link.full_force, link.full_moment)
         for key, topic in COMMANDED.items():
             name = names.of(key, topic)
-            if name is not None and (key != "cmd_wrench" or any(full)):
+            if name is not None and (key != "cmd_wrench" or any(wrench)):
                 self.watched[key] = Watched(participant, name, topic.kind, link.timeout, say)
         self.actuators = actuators(link)
         for each in self.actuators:

@@ -15,14 +15,19 @@ from seatrial.links.vehicle_sensors import read_instruments
 from seatrial.model.component import NS
 from seatrial.model.sampled import Sampled
 
+from . import faults
 from .commands import Commands
+from .diagnostics import diagnostics
+from .faults import NONE, Faults
 from .instruments import Instruments
 from .lockstep import Lockstep, awaited
 from .mismatches import Mismatches
 from .outlet import Outlet
 from .participant import Participant
-from .ports import ANGLED, CHANNELS, SHARED, Ros2Ports
+from .ports import ANGLED, CHANNELS, SHARED, UNITS, Ros2Ports
 from .published import Here
+from .services import Service
+from .simulator import Simulator
 from .steering import Orders
 from .topics import Names
 
@@ -64,6 +69,9 @@ class Ros2(Ros2Ports):
         "_outlet",
         "_commands",
         "_lockstep",
+        "_simulator",
+        "_faults",
+        "_fault_service",
         "_names",
         "_mismatches",
     }
@@ -91,6 +99,12 @@ class Ros2(Ros2Ports):
         self._outlet = Outlet(self._participant, self._names)
         self._mismatches = Mismatches(self._participant, self._say)
         self._lockstep: Lockstep | None = None
+        self._simulator: Simulator | None = None
+        if self.simulator:
+            entity = self._names.namespace.removeprefix("/")
+            self._simulator = Simulator(self._participant, self.simulator, self, entity)
+        self._faults: Faults | None = None
+        self._diagnosed_ns = self._boot_ns
         self._orders, self._source, self._reached = Orders(), "none", 0
         self._direct: dict[str, float] | None = None
 
@@ -112,6 +126,8 @@ class Ros2(Ros2Ports):
         self.leg_reached = self._reached
         if self._commands is not None:
             self.refused, self.late = self._commands.refused, self._commands.late
+        if self._faults is not None:
+            self.failure = [self._faults.acting.get(unit, NONE) for unit in UNITS]
         assert self._participant is not None
         self.reached_at = f"ros2://{self._participant.domain}{self._names.namespace}"
 
@@ -129,9 +145,16 @@ class Ros2(Ros2Ports):
             self._lockstep.wait(t, now_ns, self._outlet.write_again)
         self._mismatches.look(commands.read, self._outlet.written, self._outlet.latched)
         self._follow(commands, t)
+        self._serve(now_ns)
+        self._diagnose(now_ns)
         place = self.position_n if is_connected(*self.position_n) else self.true_position
         if self.leg and math.dist(place[:2], self.leg_to[:2]) <= (self.leg_radius or _LEG_RADIUS):
             self._reached = self.leg
+
+    def hold(self, t: float) -> None:
+        """Publish how long it stood still."""
+        if self._simulator is not None:
+            self.paused = self._simulator.paused_s
 
     def close(self) -> None:
         """Leave the domain."""
@@ -146,6 +169,10 @@ class Ros2(Ros2Ports):
         if self._commands is None:
             assert self._participant is not None
             self._commands = Commands(self._participant, self, self._names, self._say)
+            sensors = read_instruments(self.instruments)
+            self._faults = Faults(sensors, self._commands.actuators)
+            name, inject = self._names.full("inject_fault"), self._faults.inject
+            self._fault_service = Service(self._participant, name, faults.KIND, inject)
             if self.lockstep != "off":
                 stamped = self.lockstep == "stamped"
                 try:
@@ -156,6 +183,21 @@ class Ros2(Ros2Ports):
                     topics, stamped=stamped, name=self.name, limit=self.wait_limit
                 )
         return self._commands
+
+    def _serve(self, now_ns: int) -> None:
+        """Answer calls; a simulation that is paused stands still here."""
+        self._fault_service.serve()
+        if self._simulator is not None:
+            self._simulator.serve(now_ns)
+            self._simulator.stand_still(now_ns, self._fault_service.serve)
+
+    def _diagnose(self, now_ns: int) -> None:
+        """Write the state of the link and of injected faults, once a second."""
+        if now_ns < self._diagnosed_ns:
+            return
+        self._diagnosed_ns = now_ns + NS
+        acting = {} if self._faults is None else self._faults.acting
+        self._outlet.put("diagnostics", diagnostics(self, self._names, now_ns, acting))
 
     def _follow(self, commands: Commands, t: float) -> None:
         before = self._source

@@ -23,13 +23,19 @@ def confined_sockets(reaches_others: bool) -> Iterator[None]:
     if reaches_others or sys.platform != "linux":
         yield
         return
-    before = _open()
+    before = set(_sockets().values())
     yield
-    for descriptor in _open() - before:
-        with suppress(OSError), socket.socket(fileno=os.dup(descriptor)) as opened:
-            if opened.family in (socket.AF_INET, socket.AF_INET6):
-                opened.setsockopt(socket.SOL_SOCKET, socket.SO_BINDTODEVICE, _DEVICE)
+    for descriptor, identity in _sockets().items():
+        if identity not in before:
+            with suppress(OSError), socket.socket(fileno=os.dup(descriptor)) as opened:
+                if opened.family in (socket.AF_INET, socket.AF_INET6):
+                    opened.setsockopt(socket.SOL_SOCKET, socket.SO_BINDTODEVICE, _DEVICE)
 
 
-def _open() -> set[int]:
-    return {int(name) for name in os.listdir(_OPEN)}
+def _sockets() -> dict[int, str]:
+    """Return what each open descriptor of a socket leads to."""
+    found = {}
+    for name in os.listdir(_OPEN):
+        with suppress(OSError):  # that of the listing is closed by now
+            found[int(name)] = os.readlink(f"{_OPEN}/{name}")
+    return {number: where for number, where in found.items() if where.startswith("socket:")}

@@ -14,6 +14,8 @@ from seatrial.errors import InputError
 
 INSTALL = 'pip install "seatrial[ros2]"'
 FOLDER = Path(__file__).parent / "interfaces"
+_NO_FIELDS = "uint8 structure_needs_at_least_one_member\n"
+"""Of a message without any, as rosidl has it."""
 _HEADER = "uint64 client_guid\nint64 sequence_number\n"
 _PARTS = ("_Request", "_Response")
 
@@ -35,6 +37,8 @@ def type_store() -> Any:
         found |= get_types_from_msg(file.read_text(), _name(file))
     for file in sorted(FOLDER.glob("*/srv/*.srv")):
         for part, text in zip(_PARTS, file.read_text().split("---\n"), strict=True):
+            fields = [line for line in text.splitlines() if line and "=" not in line]
+            text += "" if fields else _NO_FIELDS
             found |= get_types_from_msg(_HEADER + text, _name(file) + part)
     store.register(found)
     return store

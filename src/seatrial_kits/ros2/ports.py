@@ -49,6 +49,9 @@ class Ros2Ports(Reachable, TrueMotion, Sampled):
     topics = Parameter(
         "", "1", "KEY TOPIC of topics with other names, or 'off'; with ;", check=read_topics
     )
+    simulator = Parameter(
+        "/seatrial", "1", "name before the services of simulation_interfaces; empty: none"
+    )
     truth_period = Parameter(0.02, "s", "time between two odometries and transforms", min=1e-6)
     timeout = Parameter(
         0.5, "s", "simulated time for which a command is valid, but a goal", min=1e-3
@@ -180,6 +183,7 @@ class Ros2Ports(Reachable, TrueMotion, Sampled):
     leg_reached = Output("1", "number of the leg whose end is reached, 0 while none is", type=int)
     failure = Output("1", "fault of each unit, none without", axes=UNITS, type=str, start="none")
     order = Output("1", "simulated time and text of the last order", type=str, role="order")
+    paused = Output("s", "wall time that a node paused it")
     refused = Output("1", "messages that were refused", type=int)
     late = Output("1", "commands that were older than their time-out", type=int)
 

@@ -127,11 +127,11 @@ class Node:
     def __init__(self, domain):
         self.participant = DomainParticipant(domain)
 
-    def writer(self, name, kind, qos=RELIABLE):
-        return DataWriter(self.participant, Topic(self.participant, f"rt{name}", kind), qos=qos)
+    def writer(self, name, kind, qos=RELIABLE, prefix="rt"):
+        return DataWriter(self.participant, Topic(self.participant, prefix + name, kind), qos=qos)
 
-    def reader(self, name, kind, qos=RELIABLE):
-        return DataReader(self.participant, Topic(self.participant, f"rt{name}", kind), qos=qos)
+    def reader(self, name, kind, qos=RELIABLE, prefix="rt"):
+        return DataReader(self.participant, Topic(self.participant, prefix + name, kind), qos=qos)
 
 
 def taken(reader):

@@ -2,10 +2,7 @@
 
 import logging
 import math
-import os
-import socket
 import time
-from pathlib import Path
 
 import pytest
 from cyclonedds.core import Policy, Qos
@@ -209,37 +206,3 @@ def test_variables_of_ros_that_cannot_be(otter, monkeypatch, name, value, said):
     monkeypatch.setenv(name, value)
     with pytest.raises((InputError, SimulationError), match=said):
         otter(domain=-1)
-
-
-@pytest.mark.skipif(not Path("/proc/self/fd").is_dir(), reason="Linux")
-def test_nothing_comes_in_but_over_the_loopback_interface(otter):
-    """Every socket is at 127.0.0.1, or bound to the device lo; none is in a multicast group."""
-    otter()
-    assert "0100FFEF" not in Path("/proc/net/igmp").read_text()  # 239.255.0.1, a group of DDS
-    opened = _sockets()
-    assert len(opened) > 1
-    for address, device in opened:
-        assert address == "127.0.0.1" or device == "lo"
-
-
-def _sockets():
-    found = set()
-    for descriptor in Path("/proc/self/fd").iterdir():
-        if not str(_link(descriptor)).startswith("socket:"):
-            continue
-        with socket.socket(fileno=_duplicate(descriptor)) as opened:
-            if opened.family == socket.AF_INET and opened.type == socket.SOCK_DGRAM:
-                device = opened.getsockopt(socket.SOL_SOCKET, socket.SO_BINDTODEVICE, 16)
-                found.add((opened.getsockname()[0], device.rstrip(b"\0").decode()))
-    return found
-
-
-def _link(path):
-    try:
-        return path.readlink()
-    except OSError:
-        return ""
-
-
-def _duplicate(path):
-    return os.dup(int(path.name))

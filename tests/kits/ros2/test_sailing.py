@@ -1,7 +1,5 @@
 """The Otter sailed by a node of somebody else, in a process of its own."""
 
-
-
 from seatrial import Simulation
 from tests.command import seatrial
 
@@ -10,7 +8,7 @@ LEGS = {
     "autopilot.course.waypoint_1": ["15 m", "0 m", "0 m"],
     "autopilot.course.waypoint_2": ["15 m", "40 m", "0 m"],
 }
-SLOW = {"autopilot.ros2.period": "100 ms", "autopilot.ros2.truth_period": "100 ms"}
+SLOW = {"autopilot.ros2.period": "250 ms", "autopilot.ros2.truth_period": "250 ms"}
 
 
 def otter(domain, **settings):
