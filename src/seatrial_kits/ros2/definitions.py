@@ -1,4 +1,4 @@
-"""Definitions of messages and services: the store of rosbags, and the files in ``interfaces``.
+"""Definitions of messages and services: the store of rosbags, and `interfaces`.
 
 A service ``package/srv/Name`` has two messages, ``package/msg/Name_Request`` and ``..._Response``
 in the store, each with the header that rmw_cyclonedds puts before the fields.
@@ -7,13 +7,13 @@ in the store, each with the header that rmw_cyclonedds puts before the fields.
 from __future__ import annotations
 
 from functools import cache
-from pathlib import Path
 from typing import Any
 
 from seatrial.errors import InputError
 
+from .interfaces import INTERFACES
+
 INSTALL = 'pip install "seatrial[ros2]"'
-FOLDER = Path(__file__).parent / "interfaces"
 _NO_FIELDS = "uint8 structure_needs_at_least_one_member\n"
 """Of a message without any, as rosidl has it."""
 _HEADER = "uint64 client_guid\nint64 sequence_number\n"
@@ -22,7 +22,7 @@ _PARTS = ("_Request", "_Response")
 
 @cache
 def type_store() -> Any:
-    """Return the store of ROS 2 Humble's types, with those of `FOLDER`.
+    """Return the store of ROS 2 Humble's types, with those of `INTERFACES`.
 
     The fields of those messages are the same in later distributions. Raises InputError without
     the package rosbags.
@@ -33,13 +33,14 @@ def type_store() -> Any:
         raise InputError(f"ROS 2 needs rosbags, which is not installed: {INSTALL}") from None
     store = get_typestore(Stores.ROS2_HUMBLE)
     found: dict[str, Any] = {}
-    for file in sorted(FOLDER.glob("*/msg/*.msg")):
-        found |= get_types_from_msg(file.read_text(), _name(file))
-    for file in sorted(FOLDER.glob("*/srv/*.srv")):
-        for part, text in zip(_PARTS, file.read_text().split("---\n"), strict=True):
-            fields = [line for line in text.splitlines() if line and "=" not in line]
-            text += "" if fields else _NO_FIELDS
-            found |= get_types_from_msg(_HEADER + text, _name(file) + part)
+    for name, text in INTERFACES.items():
+        package, group, short = name.split("/")
+        if group == "msg":
+            found |= get_types_from_msg(text, name)
+            continue
+        for part, fields in zip(_PARTS, text.split("---\n"), strict=True):
+            whole = _HEADER + (fields or _NO_FIELDS)
+            found |= get_types_from_msg(whole, f"{package}/msg/{short}{part}")
     store.register(found)
     return store
 
@@ -56,6 +57,3 @@ def dds_name(kind: str) -> str:
     group = "srv" if name.endswith(_PARTS) else "msg"
     return f"{package}::{group}::dds_::{name}_"
 
-
-def _name(file: Path) -> str:
-    return f"{file.parent.parent.name}/msg/{file.stem}"

@@ -3,7 +3,7 @@
 import pytest
 from cyclonedds.idl import IdlStruct
 
-from seatrial_kits.ros2.definitions import FOLDER, dds_name, service_parts, type_store
+from seatrial_kits.ros2.definitions import INTERFACES, dds_name, service_parts, type_store
 from seatrial_kits.ros2.idl import sample_type
 from seatrial_kits.ros2.message import message
 from seatrial_kits.ros2.topics import COMMANDED, PUBLISHED
@@ -11,7 +11,7 @@ from seatrial_kits.ros2.topics import COMMANDED, PUBLISHED
 from . import peer
 
 KINDS = sorted({each.kind for each in (*PUBLISHED.values(), *COMMANDED.values())})
-SERVICES = [f"{f.parent.parent.name}/srv/{f.stem}" for f in sorted(FOLDER.glob("*/srv/*.srv"))]
+SERVICES = [name for name in INTERFACES if "/srv/" in name]
 
 
 @pytest.mark.parametrize("kind", [*KINDS, *(p for s in SERVICES for p in service_parts(s))])
