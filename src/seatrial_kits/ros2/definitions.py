@@ -56,4 +56,3 @@ def dds_name(kind: str) -> str:
     package, _, name = kind.split("/")
     group = "srv" if name.endswith(_PARTS) else "msg"
     return f"{package}::{group}::dds_::{name}_"
-

@@ -42,7 +42,7 @@ class Instruments:
 
     def period_ns(self, key: str) -> int:
         """Return the sample period of a topic's sensor, ns."""
-        return round(1e9 * float(self._of.get(key, {}).get("period", _LONGEST_S)))
+        return round(1e9 * axis(self._of.get(key, {}).get("period", _LONGEST_S)))
 
     def place(self, key: str) -> list[float]:
         """Return where the sensor is, from the body origin in {b}, m."""
