@@ -114,7 +114,7 @@ def test_the_sensors_of_a_boat(ears):
     noise = math.radians(0.035) ** 2 + math.radians(0.003) ** 2
     np.testing.assert_allclose(imu[-1].angular_velocity_covariance, np.diag([noise] * 3).ravel())
     yaw = Rotation.from_quat([getattr(imu[-1].orientation, a) for a in "xyzw"]).as_euler("ZYX")[0]
-    assert yaw == pytest.approx(math.pi / 2 - heading, abs=1e-9)
+    assert math.remainder(yaw - math.pi / 2 + heading, math.tau) == pytest.approx(0.0, abs=1e-9)
     assert [each.header.frame_id for each in (imu[0], fix[0])] == ["imu_link", "gnss_link"]
     good = [each for each in fix if each.status.status == 0]
     assert good
