@@ -1,14 +1,19 @@
 """Messages of vehicles, by a reader in the same process: against their signals, and each other."""
 
 import math
+from itertools import pairwise
 
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
 from seatrial import Simulation
+from seatrial.links.geodesy import Origin
+from seatrial_kits.ros2.component import Ros2
+from seatrial_kits.ros2.instruments import Instruments
 from seatrial_kits.ros2.message import message
 from seatrial_kits.ros2.participant import Participant
+from seatrial_kits.ros2.published import MEASURED, Here
 from seatrial_kits.ros2.topics import COMMANDED, PUBLISHED, Names
 
 
@@ -80,7 +85,7 @@ def test_an_odometry_integrated_from_its_own_twist_meets_its_own_pose(ears):
         frames += otter.taken("tf")
     assert len(found) == 400
     place, turn = vector(found[0].pose.pose.position), None
-    for before, after in zip(found, found[1:], strict=False):
+    for before, after in pairwise(found):
         quaternion = before.pose.pose.orientation
         turn = turn or Rotation.from_quat([quaternion.x, quaternion.y, quaternion.z, quaternion.w])
         mean = [
@@ -134,27 +139,67 @@ def test_the_sensors_of_a_boat(ears):
     assert not otter.taken("wind")
 
 
-def test_the_sensors_of_an_underwater_vehicle(ears):
-    rov = ears("bluerov2")
-    rov.simulation.run("0.4 s")
-    (depth,) = rov.at_one_instant("depth.depth")
-    found = rov.taken("pressure")[-1]
-    assert found.fluid_pressure == pytest.approx(101_325.0 + 9806.65 * depth)
-    assert rov.taken("imu")[-1].linear_acceleration_covariance[0] == -1.0  # none is shown
-    assert found.variance > 0.0
+@pytest.fixture
+def link():
+    """The component alone: its inputs are what the functions of messages read."""
+    return Ros2("ros2")
 
 
-def test_the_wind_and_the_joints_of_a_sailing_boat(ears):
-    gloria = ears("gloria")
-    gloria.simulation.run("0.4 s")
-    speed, angle, sail = gloria.at_one_instant(
-        "anemometer.speed", "anemometer.angle", "servos.sail.angle"
-    )
-    wind = gloria.taken("wind")[-1].twist.linear
-    assert (wind.x, wind.y) == pytest.approx((speed * math.cos(angle), -speed * math.sin(angle)))
-    joints = gloria.taken("joints")[-1]
-    assert joints.name == ["rudder", "sail", "flap"]
-    assert joints.position[1] == pytest.approx(sail)
+def here(**instruments):
+    field = (1.4e-5, 1e-6, 5e-5)
+    return Here(2_500_000_000, "", Origin(1.0, 0.2), field, Instruments(instruments))
+
+
+def test_nothing_is_measured_that_nothing_is_connected_to(link):
+    assert [key for key, make in MEASURED.items() if make(link, here()) is not None] == []
+
+
+def test_the_wind_blows_to_port_of_the_bow_and_the_joints_are_those_that_are_there(link):
+    link.wind_speed, link.wind_angle, link.wind_valid = 5.0, math.radians(-30.0), True
+    linear = MEASURED["wind"](link, here())["twist"]["linear"]
+    assert linear == pytest.approx((5.0 * math.cos(math.radians(30.0)), 2.5, 0.0))
+    link.joint, speeds = (0.1, 1.2, 1e30), [30.0, *[1e30] * 7]
+    link.motor_speed = speeds
+    joints = MEASURED["joints"](link, here())
+    assert joints["name"] == ["rudder", "sail", "motor1"]
+    assert joints["position"][:2] == [0.1, 1.2]
+    assert joints["velocity"][2] == 30.0
+
+
+def test_a_dive_is_pressure_and_an_echo_that_lacks_is_infinite(link):
+    link.depth, link.depth_valid = 10.0, True
+    depth = {"kind": "depth", "depth_noise": 0.03, "depth_instability": [0.04]}
+    found = MEASURED["pressure"](link, here(depth=depth))
+    assert found["fluid_pressure"] == pytest.approx(101_325.0 + 98_066.5)
+    assert math.sqrt(found["variance"]) == pytest.approx(9806.65 * 0.05)
+    link.water_depth = 7.0
+    assert MEASURED["water_depth"](link, here())["range"] == math.inf
+    link.water_depth_valid = True
+    assert MEASURED["water_depth"](link, here())["range"] == 7.0
+    link.velocity_b = (1.0, 0.2, 0.1)
+    assert MEASURED["dvl"](link, here()) is None  # no bottom
+    link.velocity_b_valid = True
+    assert MEASURED["dvl"](link, here())["twist"]["twist"]["linear"] == (1.0, -0.2, -0.1)
+
+
+def test_a_battery_that_discharges_has_a_negative_current(link):
+    link.voltage, link.current, link.charge = 15.0, 4.0, 0.8
+    found = MEASURED["battery"](link, here())
+    assert (found["voltage"], found["current"], found["percentage"]) == (15.0, -4.0, 0.8)
+    made = message("sensor_msgs/msg/BatteryState", found)
+    assert math.isnan(made.capacity)
+
+
+def test_the_field_turns_with_the_heading_and_an_imu_without_attitude_says_so(link):
+    link.heading = math.pi / 2  # east: north is to port
+    north, east, down = here().field
+    field = MEASURED["compass"](link, here())["magnetic_field"]
+    assert field == pytest.approx((east, north, -down))
+    link.gyro = (0.1, 0.2, 0.3)
+    found = MEASURED["imu"](link, here())
+    assert found["angular_velocity"] == (0.1, -0.2, -0.3)
+    assert found["orientation_covariance"][0] == -1.0
+    assert found["linear_acceleration_covariance"][0] == -1.0
 
 
 def test_a_receiver_that_fails_says_no_fix_and_a_stuck_one_goes_on(ears):

@@ -91,7 +91,7 @@ class Profile:
         return tuple(each for table, port in found for each in read_tunables(table, port))
 
     def assume(self, section: str) -> None:
-        """Take a link ``links.KIND`` that the profile lacks for one of that kind, with its values."""
+        """Add a link ``links.KIND`` that the profile lacks, with its kind's own values."""
         kind = section.removeprefix("links.")
         if section.startswith("links.") and kind in components().names():
             self.file.links.setdefault(kind, {"kind": kind})
