@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import logging
 import math
+from pathlib import Path
 from typing import Any
 
 from seatrial.errors import InputError
@@ -16,6 +17,7 @@ from seatrial.model.component import NS
 from seatrial.model.sampled import Sampled
 
 from . import faults
+from .bag import Bag
 from .commands import Commands
 from .diagnostics import diagnostics
 from .faults import NONE, Faults
@@ -54,6 +56,8 @@ class Ros2(Ros2Ports):
     **Free running** a command acts at the instant after it came. In **lockstep** the step waits
     for the commands that are ``awaited`` (`Lockstep`): then every run has the same numbers.
 
+    With ``bag`` = "on" all that it writes is kept as a bag too, NAME in the run's folder.
+
     **Hosts**: on the loopback interface alone, unless a run is allowed the network.
 
     Not here: images and point clouds, parameters of nodes, the names of nodes in the graph.
@@ -74,12 +78,14 @@ class Ros2(Ros2Ports):
         "_fault_service",
         "_names",
         "_mismatches",
+        "_bag",
     }
 
     def __init__(self, name: str = "component") -> None:
         super().__init__(name)
         self._participant: Participant | None = None
         self._commands: Commands | None = None
+        self._bag: Bag | None = None
 
     def reset(self, t: float) -> None:
         """Join the domain."""
@@ -135,6 +141,8 @@ class Ros2(Ros2Ports):
         """Write what is due, and take in what has come, or wait for it."""
         now_ns = self._boot_ns + round(t * NS)
         here = Here(now_ns, self.frame_prefix, self._origin, self._field, self._instruments)
+        if self.bag == "on" and self.run_folder and self._bag is None:
+            self._bag = self._outlet.bag = Bag(Path(self.run_folder, self.name))
         commands = self._begun()
         if self._lockstep is not None:
             self._lockstep.meet(self._outlet.matches)
@@ -157,10 +165,12 @@ class Ros2(Ros2Ports):
             self.paused = self._simulator.paused_s
 
     def close(self) -> None:
-        """Leave the domain."""
+        """Leave the domain, and finish the bag."""
+        if self._bag is not None:
+            self._bag.close()
         if self._participant is not None:
             self._participant.close()
-        self._participant = self._commands = None
+        self._participant = self._commands = self._bag = None
 
     # ------------------------------------------------------------------ inside
 
@@ -197,7 +207,7 @@ class Ros2(Ros2Ports):
             return
         self._diagnosed_ns = now_ns + NS
         acting = {} if self._faults is None else self._faults.acting
-        self._outlet.put("diagnostics", diagnostics(self, self._names, now_ns, acting))
+        self._outlet.put("diagnostics", diagnostics(self, self._names, now_ns, acting), now_ns)
 
     def _follow(self, commands: Commands, t: float) -> None:
         before = self._source

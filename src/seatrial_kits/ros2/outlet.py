@@ -7,6 +7,7 @@ from typing import Any
 
 from seatrial.model.component import NS
 
+from .bag import Bag
 from .message import message
 from .participant import Durability, Participant, Writer
 from .ports import Ros2Ports
@@ -31,6 +32,8 @@ class Outlet:
         self._writers: dict[str, Writer | None] = {}
         self._last: dict[str, tuple[Fields, int]] = {}
         self._truth_ns, self._leg = -(10**18), 0
+        self.bag: Bag | None = None
+        """Gets all that is written, if there is one."""
         self._written: list[tuple[Writer, Any]] = []
         """What the last instant wrote."""
 
@@ -38,15 +41,17 @@ class Outlet:
         """Write what is due."""
         self._written = []
         for key, fields in self._due(link, here):
-            self.put(key, fields)
+            self.put(key, fields, here.now_ns)
 
-    def put(self, key: str, fields: Fields) -> None:
+    def put(self, key: str, fields: Fields, now_ns: int) -> None:
         """Write one message, if its topic is not off."""
         writer = self._writer(key)
         if writer is not None:
             made = message(writer.kind, fields)
             writer.write(made)
             self._written.append((writer, made))
+            if self.bag is not None:
+                self.bag.write(writer.name, writer.kind, made, now_ns)
 
     def write_again(self) -> None:
         """Write once more what the last instant wrote."""

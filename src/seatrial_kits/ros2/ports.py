@@ -10,7 +10,15 @@ from seatrial.links.servos import read_servos
 from seatrial.links.truth import MOTION, TrueMotion
 from seatrial.links.unconnected import NOT_CONNECTED
 from seatrial.links.vehicle_sensors import read_instruments
-from seatrial.model.component import Input, Output, Parameter, Reachable, Terminal, terminal
+from seatrial.model.component import (
+    Input,
+    Logging,
+    Output,
+    Parameter,
+    Reachable,
+    Terminal,
+    terminal,
+)
 from seatrial.model.sampled import Sampled
 from seatrial.model.terminals import ORDERED
 
@@ -35,7 +43,7 @@ _NED = ("north", "east", "down")
 _MANUAL = ("surge", "sway", "yaw", "heave")
 
 
-class Ros2Ports(Reachable, TrueMotion, Sampled):
+class Ros2Ports(Logging, Reachable, TrueMotion, Sampled):
     """Parameters, inputs and outputs of `Ros2`."""
 
     period = Parameter(0.01, "s", "sample period", min=1e-6)
@@ -90,6 +98,7 @@ class Ros2Ports(Reachable, TrueMotion, Sampled):
     full_moment = Parameter(
         0.0, "N.m", "moment at full manual control, to starboard; 0: none", min=0.0
     )
+    bag = Parameter("off", "1", "whether a bag of all it writes is kept", choices=("off", "on"))
     actuators = Parameter(
         "",
         "1",

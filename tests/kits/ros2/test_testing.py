@@ -3,6 +3,7 @@
 import pytest
 
 from seatrial.errors import InputError
+from tests.command import seatrial
 
 
 @pytest.fixture
@@ -47,3 +48,25 @@ def test_topics_that_are_not_there_are_named(otter):
         node.publish("imu/date")
     with pytest.raises(AssertionError, match=r"pressure was not received .*nothing"):
         node.expect("pressure", within="0.1 s")
+
+
+def test_a_bag_has_what_a_recorder_would_have(tmp_path, domain):
+    """Read by mcap-ros2-support, which knows nothing of rosbags."""
+    from mcap_ros2.reader import read_ros2_messages
+
+    done = seatrial(
+        *("run", "under-way", "--vehicle", "otter", "--autopilot", "ros2", "--engine", "direct"),
+        *("--set", "stop=0.5 s", "--set", "autopilot.ros2.bag=on", "--out", "run"),
+        *("--set", f"autopilot.ros2.domain={domain}"),
+        cwd=tmp_path,
+    )
+    assert done.returncode in (0, 1), done.stderr
+    (file,) = (tmp_path / "run/autopilot.ros2").glob("*.mcap")
+    found = {}
+    for each in read_ros2_messages(str(file)):
+        found.setdefault(each.channel.topic, []).append(each.ros_msg)
+    assert len(found["/clock"]) == 50
+    assert len(found["/otter/imu/data"]) == 50
+    assert len(found["/otter/odometry/ground_truth"]) == 25
+    assert found["/otter/leg"][0].poses[1].pose.position.x == 5000.0
+    assert found["/otter/imu/data"][7].header.stamp.nanosec == 70_000_000
