@@ -44,6 +44,7 @@ HERE = Path(__file__).parent
 
 RIG: dict[str, Any] = {
     "title": "Otter, hull and propellers",
+    "variant": "loaded",
     "step": "20 ms",
     "components": {
         "hull": {"fmu": "marine-craft", "parameters": "otter"},

@@ -27,6 +27,7 @@ from parts import (  # noqa: E402, F401  each registers its parts
     hydrone_deck,
     logs,
     mavlink,
+    measured,
     native,
     nmea0183,
     nmea2000,

@@ -73,6 +73,8 @@ ELSEWHERE = {
     KITS
     / "ardupilot/autopilots.md",  # tests/kits/ardupilot: time stands still until a firmware comes
     KITS / "px4/px4.md",  # tests/kits/px4: the same
+    KITS / "ros2/ros2.md",  # tests/kits/ros2: a run that waits for nodes
+    KITS / "ros2/ros2-controller.md",  # the same, where there is a ROS 2
     KITS / "mavlink/ground-stations.md",  # sessions of MAVSDK and MAVProxy, in tests/interop
     HOW_TO / "test-with-pytest.md",  # tests/testing
     DOCS / "tutorials/ci.md",  # tests/testing: a project of its own

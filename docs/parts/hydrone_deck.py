@@ -12,7 +12,8 @@ import numpy as np
 from parts import elsewhere, part
 from parts.hydrone import PHASE_NAMES, SPOOL_UP
 from parts.markdown import fixed, table
-from seatrial.trial.campaigns.campaign import load_campaign, run_campaign
+from seatrial.trial.campaigns.campaign import load_campaign
+from seatrial.trial.campaigns.in_folders import run_campaign
 from seatrial.trial.records.run_folder import Run, load_run
 
 _BOW = 0.638

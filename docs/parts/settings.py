@@ -136,11 +136,11 @@ for _vehicle in (
     "remus100",
     "glider",
     "wam-v",
+    "thruster-ship",
 ):
     part(f"{_vehicle}-parameters")(partial(parameters, _vehicle))
     part(f"{_vehicle}-variants")(partial(variants, _vehicle))
-for _vehicle in ("thruster-ship", "supply-ship"):
-    part(f"{_vehicle}-parameters")(partial(parameters, _vehicle))
+part("supply-ship-parameters")(partial(parameters, "supply-ship"))
 
 
 def sensors_of(profile: str) -> str:

@@ -9,7 +9,8 @@ from parts import elsewhere, part
 from parts.markdown import table
 from seatrial.model.readable import number
 from seatrial.shipped import available
-from seatrial.trial.campaigns.campaign import load_campaign, run_campaign
+from seatrial.trial.campaigns.campaign import load_campaign
+from seatrial.trial.campaigns.in_folders import run_campaign
 from seatrial.trial.files.trial import load_trial
 from seatrial.trial.records.run_folder import load_run
 from seatrial.trial.running.run import run_trial

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from parts import elsewhere, part
 from parts.markdown import table
-from seatrial.trial.campaigns.campaign import Case, load_campaign, run_campaign
+from seatrial.trial.campaigns.campaign import load_campaign
+from seatrial.trial.campaigns.cases import Case
+from seatrial.trial.campaigns.in_folders import run_campaign
 from seatrial.trial.running.run import Result
 
 

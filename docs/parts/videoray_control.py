@@ -11,7 +11,8 @@ from parts.markdown import table
 from parts.settings import parameters, variants
 from parts.ships import verdicts
 from seatrial.model.readable import number
-from seatrial.trial.campaigns.campaign import load_campaign, run_campaign
+from seatrial.trial.campaigns.campaign import load_campaign
+from seatrial.trial.campaigns.in_folders import run_campaign
 from seatrial.trial.records.run_folder import load_run
 
 part("videoray-surface-parameters")(partial(parameters, "videoray-surface"))

@@ -7,6 +7,8 @@ the names that files of their own would have::
     vehicles/NAME       the table rig of vehicle.toml
     pilots/NAME         pilot.toml
     GROUP/NAME-PART     the table rigs.GROUP.PART of either
+
+A vehicle NAME-PART, of rigs.vehicles.PART and rigs.pilots.PART, has the numbers of NAME.
 """
 
 from __future__ import annotations
@@ -81,14 +83,19 @@ def stem(place: Place) -> str:
 def _meant(folder: Path, kind: str, name: str) -> Iterator[Place]:
     """Yield the places that a name may mean."""
     group, slash, last = name.rpartition("/")
+    ends = [i for i, letter in enumerate(last) if letter == "-"]
     if kind == "vehicles" and not slash:
         yield Place(folder / name / VEHICLE)
-    elif kind == _RIGS and group == "vehicles":
-        yield Place(folder / last / VEHICLE, ("rig",))
+        for end in ends:
+            rig = Place(folder / name[:end] / VEHICLE, ("rigs", kind, name[end + 1 :]))
+            if rig.path.is_file() and has(rig):
+                yield Place(rig.path)
     elif kind == _RIGS and group:
-        if group == "pilots":
+        if group == "vehicles":
+            yield Place(folder / last / VEHICLE, ("rig",))
+        elif group == "pilots":
             yield Place(folder / last / PILOT)
-        for end in (i for i, letter in enumerate(last) if letter == "-"):
+        for end in ends:
             for file in (VEHICLE, PILOT):
                 yield Place(folder / last[:end] / file, ("rigs", group, last[end + 1 :]))
 

@@ -3,7 +3,8 @@
 import pytest
 
 from seatrial.errors import InputError
-from seatrial.trial.campaigns.campaign import load_campaign, run_campaign
+from seatrial.trial.campaigns.campaign import load_campaign
+from seatrial.trial.campaigns.in_folders import run_campaign
 from seatrial.trial.campaigns.shipment import packed, unpacked
 from seatrial.trial.records.run_folder import load_run
 from tests.command import seatrial

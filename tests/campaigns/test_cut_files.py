@@ -8,8 +8,8 @@ import pandas as pd
 import pytest
 
 from seatrial.errors import InputError
-from seatrial.trial.campaigns.campaign import run_campaign
 from seatrial.trial.campaigns.ended import Ended
+from seatrial.trial.campaigns.in_folders import run_campaign
 from seatrial.trial.campaigns.sweep import How, run_sweep
 from seatrial.trial.running.hooks import Hooks
 from seatrial.trial.running.measuring import Measured

@@ -383,3 +383,15 @@ def test_sections_are_found_in_the_rigs_profile_or_in_the_one_they_name(write):
     assert (other.read_from.name, section) == ("gloria", "sensors.gnss")
     with pytest.raises(InputError, match="here: the rig names no profile"):
         Profiles(None, write("rig.toml", "").parent).find("sensors.gnss", "here")
+
+
+def test_a_link_that_may_lack_is_one_of_its_kind_with_what_the_rest_of_the_profile_says(write):
+    write("rig.toml", "")
+    profiles = Profiles("hydrone", write("rig.toml", "").parent)
+    profile, section = profiles.find("links.nmea0183?", "here")
+    assert section == "links.nmea0183"
+    given = profile.parameters(section)
+    assert math.degrees(given["latitude"]) == pytest.approx(-31.7806, abs=0.1)
+    assert "sentences" not in given
+    with pytest.raises(InputError, match=r"here: .*'links.nmea0184'.*'links\.nmea0183'"):
+        profiles.find("links.nmea0184?", "here")

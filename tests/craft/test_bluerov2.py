@@ -242,7 +242,10 @@ def test_in_the_air_it_has_no_thrust_and_falls():
     assert up.derivatives(x)[8] == pytest.approx(132.57 / 32.18)
 
 
-def test_pilot_and_hull_have_the_same_places():
-    hull, allocation = rov(), shipped("thruster-matrix-allocation", "bluerov2.allocation")
-    assert allocation.position[:8] == hull.propeller_position
-    assert allocation.direction[:8] == hull.propeller_direction
+def test_the_pilot_has_the_places_of_the_hull_from_the_cg():
+    for variant in ("benchmark", "wu", "calibrated"):
+        hull = rov(variant)
+        allocation = shipped("thruster-matrix-allocation", "bluerov2.allocation", variant)
+        places = np.array(hull.propeller_position) - hull.center_of_gravity
+        np.testing.assert_allclose(allocation.position[:8], places, atol=1e-15)
+        assert allocation.direction[:8] == hull.propeller_direction

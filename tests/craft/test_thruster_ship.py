@@ -4,6 +4,7 @@ Numbers come from the equations of source 003 by independent calculation.
 """
 
 import csv
+import math
 from pathlib import Path
 
 import numpy as np
@@ -13,6 +14,8 @@ from scipy.integrate import solve_ivp
 from seatrial.errors import InputError
 from seatrial.physics.craft.thruster_ship import ThrusterShip
 from seatrial.system.parameters import load_vehicle
+
+from .references import shipped
 
 DATA = Path(__file__).parents[1] / "reference"
 A1, A2, A6, c = 7.88e6, 1.364e7, 4.31e9, 7.9e6
@@ -286,3 +289,48 @@ def test_motion_is_published_as_sensors_expect_it():
     u_dot, v_dot, _ = craft.derivatives(np.array([0, 0, 0.3, 5, 1, 0.02]))[3:]
     expected = [u_dot - 0.02 * 1.0, v_dot + 0.02 * 5.0, 0.0]
     np.testing.assert_allclose(craft.get("acceleration"), expected, rtol=1e-14)
+
+
+# ---------------------------------------------------------------------- drag
+
+DRAG = (4191.4, 186550.0, 2984.8e6)
+"""Of 80 m by 18 m by 6.5 m: N.s2/m2, N.s2/m2, N.m.s2/rad2."""
+
+
+@pytest.mark.parametrize(
+    ("axis", "mass", "load"), [(0, A1, (2.5e5, 0, 0)), (1, A2, (0, 2.5e5, 0)), (2, A6, (0, 0, 1e7))]
+)
+def test_under_one_force_an_axis_tends_to_its_speed_as_tanh(axis, mass, load):
+    # u = u_inf tanh(t / T), T = M / (k u_inf). Y_rdot = 0 keeps the axes apart.
+    k, F = DRAG[axis], load[axis]
+    end_speed = math.sqrt(F / k)
+    T = mass / (k * end_speed)
+    t = np.linspace(0.0, 3 * T, 7)
+    found = build(load=load, drag=DRAG, Y_rdot=0.0).reference(t, rtol=1e-10).x[:, 3 + axis]
+    np.testing.assert_allclose(found, end_speed * np.tanh(t / T), rtol=1e-7, atol=1e-12)
+
+
+def test_the_default_has_a_hulls_drag_and_the_published_ship_none():
+    speeds = {}
+    for variant in (None, "published"):
+        vessel = shipped(
+            "thruster-ship", "thruster-ship.thruster-ship", variant, force_1=(2.5e5, 0)
+        )
+        speeds[variant] = vessel.reference([0.0, 3600.0])["nu.u"][-1]
+    assert speeds == {
+        None: pytest.approx(7.72, abs=0.01),
+        "published": pytest.approx(114.2, abs=0.1),
+    }
+    np.testing.assert_allclose(
+        shipped("thruster-ship", "thruster-ship.thruster-ship").drag, DRAG, rtol=1e-4
+    )
+
+
+def test_the_drag_takes_power_whatever_the_motion():
+    rng = np.random.default_rng(1)
+    for nu in rng.normal(size=(20, 3)) * (5.0, 1.0, 0.05):
+        x = np.array([0, 0, 0, *nu])
+        change = [build(drag=drag).derivatives(x)[3:] for drag in (DRAG, (0.0, 0.0, 0.0))]
+        M = build().mass_matrix()
+        expected = -np.array(DRAG) * np.abs(nu) * nu
+        np.testing.assert_allclose(M @ (change[0] - change[1]), expected, rtol=1e-9, atol=1e-6)

@@ -7,6 +7,7 @@ import pytest
 from seatrial.control.guidance_orders import TARGETS
 from seatrial.control.sailing.guidance import SailingGuidance
 from seatrial.control.tracking.velocity_filter import VelocityFilter
+from seatrial.devices.actuators.marine_engine import ORDERS as TELEGRAPH
 from seatrial.fmi.components.source import shipped_sources
 from seatrial.fmi.dependencies.found import feedthrough_of
 from seatrial.model.component import Component
@@ -23,7 +24,7 @@ CLASSES = [
     if source.module.split(".")[1] in ("control", "devices", "environment", "identification")
 ]
 """Those of the index; each declares the values that bring everything in it to life."""
-TEXTS = {"fault": ("none", *FAULTS), "target_kind": TARGETS}
+TEXTS = {"fault": ("none", *FAULTS), "target_kind": TARGETS, "telegraph": TELEGRAPH}
 SELDOM = {
     Mooring: {"force": {"point", "velocity"}},  # from its first step on
     SailingGuidance: {

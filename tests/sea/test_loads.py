@@ -62,6 +62,37 @@ def test_forces_and_motions_by_strips_are_those_of_the_reference(body):
             assert abs(motion[1] - phasor(row, "X_roll")) < 1e-6 * rows["X_roll_amp"].max()
 
 
+@pytest.mark.parametrize(
+    ("body", "shortest", "near"), [("barge_T020", 10.0, 0.06), ("cat_13", 23.0, 0.09)]
+)
+def test_a_hull_in_long_beam_seas_sways_as_by_panels_whatever_its_constant_damping(
+    body, shortest, near
+):
+    strips, given = strips_of(body)
+    coefficients = table(f"coef_{body}")
+    rows = table(f"rao_{body}")
+    rows = rows[(rows["direction_deg"] == 90) & (rows["omega"] < 6.0)]
+    beam, compared = max(given["sections"]["b"]), 0
+    for row in rows:
+        w = row["omega"]
+        k = wave_number(np.array([w]))
+        if math.tau / k[0] < shortest * beam:
+            continue
+        own = coefficients[np.argmin(np.abs(coefficients["omega"] - w))]
+        panels = phasor(row, "F_sway") / (
+            -(w**2) * (given["mass"] + own["A22"]) + 1j * w * own["B22"]
+        )
+        for damping in (1.0, 0.0):
+            part, _ = strips_of(body, b22=damping * strips.b22)
+            A, D = (len(part.hulls) * c.sum() * part.spacing for c in (part.a22, part.b22))
+            force = part.forces(np.array([w]), k, math.pi / 2)[1, 0]
+            found = force / (-(w**2) * (given["mass"] + A) + 1j * w * D)
+            assert abs(found - panels) < near
+        assert abs(force) == pytest.approx(row["F_sway_amp"], rel=0.23)
+        compared += 1
+    assert compared > 4
+
+
 def test_force_by_haskind_has_the_size_that_damping_says():
     sections = table("sections")
     circle = sections[sections["section"] == "half_circle"]

@@ -35,6 +35,31 @@ def test_it_is_near_the_panels(body, error):
             assert np.abs(found[:, n, n] - wanted[:, motion, motion]).max() < error * largest
 
 
+def test_it_says_what_it_misses_of_each_motion():
+    w, added, damping, infinite = panels("barge_T020")
+    for memory, group in zip(memories(w, added, damping, infinite), GROUPS, strict=True):
+        for n, motion in enumerate(group):
+            own = damping + 1j * w[:, None, None] * (added - infinite)
+            own = own[:, motion, motion]
+            off = memory.response(w)[:, n, n] - own
+            assert memory.missed[n] == pytest.approx(
+                np.sqrt((np.abs(off) ** 2).sum() / (np.abs(own) ** 2).sum()), rel=1e-9
+            )
+            assert memory.missed[n] < 0.02
+
+
+@pytest.mark.parametrize(("motion", "name"), [(3, "roll"), (5, "yaw")])
+def test_one_motion_that_no_memory_gives_is_enough_to_refuse_and_is_named(motion, name):
+    # Its damping alternates from frequency to frequency; its group has an error of 17 %.
+    w, added, damping, infinite = panels("barge_T020")
+    damping = damping.copy()
+    damping[::2, motion, motion] *= 1.6
+    damping[1::2, motion, motion] *= 0.4
+    with pytest.raises(InputError, match=rf"{name} [2-9]\d%") as refused:
+        memories(w, added, damping, infinite)
+    assert "surge 0%" in str(refused.value)
+
+
 @pytest.mark.parametrize("body", ["barge_T020", "cat_13"])
 def test_it_takes_energy_at_every_frequency_and_from_every_motion(body):
     for memory in memories(*panels(body)):

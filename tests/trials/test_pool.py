@@ -13,8 +13,9 @@ import pytest
 
 from seatrial.errors import InputError
 from seatrial.trial.campaigns import campaign as campaigns
-from seatrial.trial.campaigns.campaign import load_campaign, run_campaign
+from seatrial.trial.campaigns.campaign import load_campaign
 from seatrial.trial.campaigns.cases import case_folders, changed_cases, run_cases
+from seatrial.trial.campaigns.in_folders import run_campaign
 from seatrial.trial.running.pool import Pool
 from seatrial.trial.running.run import Result
 from tests.cli.test_stop import SEATRIAL, wait_for

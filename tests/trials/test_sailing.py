@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from seatrial.trial.campaigns.campaign import load_campaign, run_campaign
+from seatrial.trial.campaigns.campaign import load_campaign
+from seatrial.trial.campaigns.in_folders import run_campaign
 from seatrial.trial.files.trial import load_trial
 from seatrial.trial.records.run_folder import load_run
 from seatrial.trial.reports.campaign_report import write_campaign_report

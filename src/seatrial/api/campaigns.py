@@ -142,6 +142,7 @@ def run_campaign(
     keep: str | None = None,
     cluster: str | None = None,
     resume: bool = False,
+    rerun_changed: bool = False,
     progress: Callable[[int, int], None] | None = None,
 ) -> CampaignResult:
     """Run every case of a campaign, as ``seatrial run`` does, and return what they left.
@@ -152,9 +153,10 @@ def run_campaign(
     "failed" or "none"), or that of the campaign's file, leaves a table of all cases, with the
     folders of those; ``cluster`` runs it on the workers of a Dask scheduler, ``HOST:PORT`` or
     ``tls://HOST:PORT``, on another host only if the environment has SEATRIAL_NETWORK=1. With
-    ``resume``, ``out`` may be what the campaign has left: it goes on from there. ``progress`` is
-    called after each case with how many are done, and of how many. A case that could not go on, or
-    whose process died, has the status ``failed`` and does not end the campaign.
+    ``resume``, ``out`` may be what the campaign has left: it goes on from there, unless files,
+    seatrial or libraries have changed since; ``rerun_changed`` runs again what these touch.
+    ``progress`` is called after each case with how many are done, and of how many. A case that
+    could not go on, or whose process died, has the status ``failed`` and does not end the campaign.
 
     Raises InputError for bad input in any case, before the first one runs; KeyboardInterrupt for
     a campaign that was interrupted: its folder holds the cases so far, for
@@ -174,11 +176,11 @@ def run_campaign(
         if progress is not None:
             progress(finished, count)
 
-    how = How(as_engine(engine), jobs, cluster, kept, resume)
+    how = How(as_engine(engine), jobs, cluster, kept, resume, rerun_changed)
     with confined():
         if loaded.has_table or kept is not None or cluster is not None:
             return CampaignResult(_swept(loaded, target, how, done))
-        return CampaignResult(_run(loaded, target, engine, jobs, resume, done))
+        return CampaignResult(_run(loaded, target, how, done))
 
 
 def _swept(campaign: Campaign, out: Path | None, how: How, done: Done) -> Path:
@@ -196,17 +198,16 @@ def _warning() -> Hooks:
     return Hooks(note=lambda text: warnings.warn(text, stacklevel=2))
 
 
-def _run(
-    campaign: Campaign, out: Path | None, engine: str, jobs: int | None, resume: bool, done: Done
-) -> Path:
-    from ..trial.campaigns.campaign import run_campaign as run
+def _run(campaign: Campaign, out: Path | None, how: How, done: Done) -> Path:
+    from ..trial.campaigns.in_folders import run_campaign as run
 
     folder, results = run(
         campaign,
         out,
-        engine=as_engine(engine),
-        jobs=jobs,
-        resume=resume,
+        engine=how.engine,
+        jobs=how.jobs,
+        resume=how.resume,
+        rerun_changed=how.rerun_changed,
         hooks=_warning(),
         done=done,
     )

@@ -13,9 +13,10 @@ from rich.markup import escape
 
 from ..errors import InputError, SimulationError
 from ..system.system import Engine
-from ..trial.campaigns.campaign import Campaign, load_campaign, run_campaign
+from ..trial.campaigns.campaign import Campaign, load_campaign
 from ..trial.campaigns.cases import Case
 from ..trial.campaigns.further_page import write_further_page
+from ..trial.campaigns.in_folders import run_campaign
 from ..trial.campaigns.sweep import How as SweepHow
 from ..trial.campaigns.sweep import keep_named
 from ..trial.reports.campaign_report import write_campaign_report, write_case_report
@@ -38,6 +39,7 @@ class How:
     engine: Engine
     jobs: int | None
     resume: bool
+    rerun_changed: bool
     cluster: str | None
     keep: str | None
     hang_after: float | None
@@ -57,9 +59,8 @@ def run_cases(
             raise InputError(
                 "--keep and --cluster leave a table: this campaign makes a page of all"
             )
-        sweep = SweepHow(
-            how.engine, how.jobs, how.cluster, keep_named(how.keep, "--keep"), how.resume
-        )
+        keep = keep_named(how.keep, "--keep")
+        sweep = SweepHow(how.engine, how.jobs, how.cluster, keep, how.resume, how.rerun_changed)
         run_table(campaign, out, sweep, junit=leaves.junit, report=leaves.report)
     else:
         _run_folders(campaign, out, how, leaves)
@@ -90,6 +91,7 @@ def _run_folders(campaign: Campaign, out: Path | None, how: How, leaves: Leaves)
                 engine=how.engine,
                 jobs=how.jobs,
                 resume=how.resume,
+                rerun_changed=how.rerun_changed,
                 page=partial(write_case_report, play=play) if leaves.report else None,
                 hooks=hooks,
                 done=done,

@@ -50,6 +50,7 @@ from .run_options import (
     Port,
     RealTime,
     Record,
+    RerunChanged,
     Resume,
 )
 from .show import print_notes, print_reachable, print_verdicts, run_entry
@@ -80,6 +81,7 @@ def run(
     junit: Junit = None,
     jobs: Jobs = None,
     resume: Resume = False,
+    rerun_changed: RerunChanged = False,
     live: Live = False,
     port: Port = 0,
     open_: Open = False,
@@ -107,15 +109,16 @@ def run(
             "--real-time and --overrun work with a trial, not with a campaign": pace,
             "--record works with a trial, not with a campaign": record != "trial",
             "--resume needs the campaign's folder, --out FOLDER": resume and out is None,
+            "--rerun-changed goes with --resume": rerun_changed and not resume,
         }
         for refusal, given in of_trials.items():
             if given:
                 raise InputError(refusal)
-        how = How(chosen, jobs, resume, cluster, keep, hang_after, keep_going)
+        how = How(chosen, jobs, resume, rerun_changed, cluster, keep, hang_after, keep_going)
         run_cases(trial, changes, out, how, leaves)
         return
-    if jobs is not None or resume or keep or cluster:
-        said = "--jobs, --resume, --keep and --cluster"
+    if jobs is not None or resume or rerun_changed or keep or cluster:
+        said = "--jobs, --resume, --rerun-changed, --keep and --cluster"
         raise InputError(f"{said} work with a campaign; a trial is one run")
     trial, changes = with_vehicle(trial, changes)
     loaded = load_trial(trial, changes=changes, origin="--set")

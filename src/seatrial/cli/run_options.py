@@ -36,6 +36,12 @@ Resume = Annotated[
     bool,
     typer.Option("--resume", help="Go on with a campaign that was stopped, in --out's folder."),
 ]
+RerunChanged = Annotated[
+    bool,
+    typer.Option(
+        "--rerun-changed", help="With --resume: run again the cases whose files have changed."
+    ),
+]
 Live = Annotated[
     bool,
     typer.Option("--live", help="Show the run in three dimensions, in a browser, as it goes."),

@@ -45,6 +45,11 @@ def devices_allowed() -> bool:
     return os.environ.get(ALLOWED) == "1"
 
 
+def network_allowed() -> bool:
+    """Return whether other hosts may be reached."""
+    return os.environ.get(NETWORK_ALLOWED) == "1"
+
+
 @contextmanager
 def confined() -> Iterator[None]:
     """Allow neither devices nor other hosts to components that start inside.

@@ -46,6 +46,10 @@ class Bench(Simulation):
         """Return the device with a Pro 4 line that is the component ``name``."""
         return service("videoray.pro4")(self, name)
 
+    def ros2(self, name: str) -> Any:
+        """Return a node of ROS 2 beside the vehicle whose link is the component ``name``."""
+        return service("ros2.node")(self, name)
+
     @property
     def vehicle(self) -> Any:
         """The MAVLink vehicle that ``mavlink`` named. Raises InputError."""

@@ -13,10 +13,10 @@ from seatrial.links.endpoints.url import open_endpoints, other_end
 from seatrial.links.geodesy import Origin
 from seatrial.links.parameter_validation import start_us
 from seatrial.links.program import Program, check_program
+from seatrial.links.servos import read_servos
 from seatrial.links.vehicle_sensors import read_instruments
 from seatrial.links.watchdog import Watchdog
 from seatrial.model.component import Component
-from seatrial_kits.mavlink.parameters.servo import read_servos
 
 from .earth import Earth
 from .firmware import arguments, by_hand

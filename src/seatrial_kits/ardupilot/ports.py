@@ -8,6 +8,7 @@ from typing import ClassVar
 from seatrial.errors import InputError
 from seatrial.links.endpoints.url import check_urls
 from seatrial.links.parameter_validation import start_us
+from seatrial.links.servos import read_servos
 from seatrial.links.truth import MOTION, TrueMotion
 from seatrial.links.vehicle_sensors import read_instruments
 from seatrial.model.component import (
@@ -19,7 +20,6 @@ from seatrial.model.component import (
     Terminal,
     terminal,
 )
-from seatrial_kits.mavlink.parameters.servo import read_servos
 
 from .packet import MOST_CHANNELS
 from .reply import RANGES, read_fields

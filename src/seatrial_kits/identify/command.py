@@ -1,16 +1,15 @@
-"""``seatrial identify``: parameters of a vehicle from logs of experiments, or of manoeuvres."""
+"""``seatrial identify``: parameters of an axis of a vehicle from the log of an experiment."""
 
 from __future__ import annotations
 
 from dataclasses import asdict
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 import typer
 from rich.box import SIMPLE
 from rich.markup import escape
 from rich.table import Table
-from typer.core import TyperGroup
 
 from seatrial.cli.answer import answer
 from seatrial.cli.options import LogFormat
@@ -18,7 +17,6 @@ from seatrial.cli.show import console
 from seatrial.trial.reports.report import REPORT
 from seatrial.trial.running.output import claim_folder
 
-from .manoeuvres.command import manoeuvres
 from .studies.page import RatioRow, physical_rows, ratio_rows, write_page
 from .studies.planar_experiment import PlanarExperiment, read_experiment
 from .studies.planar_page import planar_rows, write_planar_page
@@ -28,32 +26,9 @@ from .studies.vehicle_file import base_vehicle, write_vehicle
 
 VEHICLE = "vehicle.toml"
 _REJECTED = 1
-_DEFAULT = "experiment"
 
 
-class _Identify(TyperGroup):
-    """The commands of identification; what names none of them is an experiment."""
-
-    def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
-        """Put the name of the command first where it is left out."""
-        if args and args[0] not in (*self.commands, *ctx.help_option_names):
-            args = [_DEFAULT, *args]
-        return super().parse_args(ctx, args)
-
-
-identify_app = typer.Typer(
-    cls=_Identify, no_args_is_help=True, pretty_exceptions_enable=False, rich_markup_mode=None
-)
-identify_app.command()(manoeuvres)
-
-
-@identify_app.callback()
-def _identify() -> None:
-    """Identify vehicles from logs."""
-
-
-@identify_app.command()
-def experiment(
+def identify(
     experiment: Annotated[str, typer.Argument(help="What the log holds: a name or a .toml file.")],
     log: Annotated[
         Path | None,

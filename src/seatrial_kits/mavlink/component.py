@@ -17,6 +17,7 @@ from seatrial.links.parameter_validation import (
     version,
     whole_number,
 )
+from seatrial.links.servos import read_servos
 from seatrial.links.unconnected import is_connected
 from seatrial.model.sampled import Sampled
 
@@ -25,7 +26,6 @@ from .node import Node
 from .outputs import SHARED, Outputs
 from .parameters.file import ParameterFile
 from .parameters.parameters import vehicle_parameters
-from .parameters.servo import read_servos
 from .parameters.table import ParameterTable
 from .parameters.tunable import MOST_TUNABLES, tunable_parameters
 from .pause import stand_still

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-from .parameters.servo import Servo
+from seatrial.links.servos import Servo
 
 SHARED = ("port", "starboard", "vertical")
 """Actuators whose commands may come as shares of full thrust in the place of pulses."""

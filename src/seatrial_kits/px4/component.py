@@ -11,10 +11,10 @@ from seatrial.links.endpoints.endpoint import report
 from seatrial.links.endpoints.tcp import TcpServer
 from seatrial.links.endpoints.url import open_endpoints, other_end
 from seatrial.links.program import Program
+from seatrial.links.servos import Servo, read_servos
 from seatrial.links.truth import require_possible
 from seatrial.links.watchdog import EVERY_S, Watchdog
 from seatrial.model.component import Component
-from seatrial_kits.mavlink.parameters.servo import Servo, read_servos
 
 from .firmware import arguments, by_hand, check_build, environment, instance_of, read_parameters
 from .instruments import Instruments, microseconds

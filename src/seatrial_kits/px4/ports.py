@@ -8,6 +8,7 @@ from typing import ClassVar
 from seatrial.errors import InputError, unknown
 from seatrial.links.endpoints.url import check_urls
 from seatrial.links.parameter_validation import start_us
+from seatrial.links.servos import read_servos
 from seatrial.links.truth import MOTION, TrueMotion
 from seatrial.links.vehicle_sensors import read_instruments
 from seatrial.model.component import (
@@ -20,7 +21,6 @@ from seatrial.model.component import (
     Terminal,
     terminal,
 )
-from seatrial_kits.mavlink.parameters.servo import read_servos
 
 CHANNELS = 16
 """Of HIL_ACTUATOR_CONTROLS."""

@@ -41,6 +41,8 @@ _FOUND = 0.005
 _SPEED_SHARE, _RATE_SHARE = 0.01, 0.02
 _PATIENCE = 20
 """Windows after which an order ends though nothing has become steady."""
+_SURE = 5.0
+"""How long a speed is down before that ends an order, s: noise alone does not."""
 _ASTERN = -0.5
 """Speed order before a manoeuvre that begins at rest, while the craft still moves ahead."""
 _WATCHED = ("speed", "heading", "rate", "depth", "pitch", "helm")
@@ -297,7 +299,9 @@ class Manoeuvre(HelmForRate, Sampled):
             return self._has_lasted(LASTING)
         if order.until == SLOW:
             slowest: float = self._fast * (self.slow if order.speed == 0.0 else 0.0)
-            return self._speed() <= slowest
+            count = min(max(round(_SURE / self.period), 1), self._samples)
+            latest = self._windows["speed"][-count:]
+            return len(latest) == count and max(latest) <= slowest
         if order.until == SETTLED:
             found = order.by != RATE or self._is_found(order.share)
             turning = self._is_steady("rate", _RATE_SHARE, _RATE)

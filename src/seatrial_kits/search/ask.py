@@ -19,6 +19,7 @@ from seatrial.trial.campaigns.ended import Ended
 from seatrial.trial.campaigns.ended_log import EndedLog, ended_cases
 from seatrial.trial.campaigns.evaluator import Plan
 from seatrial.trial.campaigns.finding import ANSWER, Finding, read_answer
+from seatrial.trial.campaigns.identity import identity_of
 from seatrial.trial.campaigns.questions import (
     LimitsQuestion,
     Questions,
@@ -27,12 +28,12 @@ from seatrial.trial.campaigns.questions import (
     WorstCaseQuestion,
 )
 from seatrial.trial.campaigns.sampled_checks import check
-from seatrial.trial.campaigns.sweep import Done, How, Sweep, index_of, refuse_other, workers_of
+from seatrial.trial.campaigns.sweep import Done, How, Sweep, changes_of, index_of, workers_of
 from seatrial.trial.campaigns.table import Tables, arrow
 from seatrial.trial.running.hooks import Hooks
 from seatrial.trial.running.measuring import Measured
 from seatrial.trial.running.output import claim_folder, write_json
-from seatrial.trial.running.resuming import cut_aside, has_index
+from seatrial.trial.running.resuming import cut_aside
 
 from .asking import Asking, stopped
 from .limits_answer import limits_question
@@ -82,18 +83,18 @@ def ask(
     entry = getattr(settings, question.replace("-", "_")) or kind()
     answer, space = prepared(entry, asking), asking.space
     plan = Plan(how.engine, how.keep or campaign.file.keep or "none", campaign.file.samples)
-    index = index_of(campaign, how.engine, 0, [question, settings.model_dump()])
+    identity = identity_of(campaign)
+    index = index_of(campaign, identity, how.engine, 0, [question, settings.model_dump()])
     left = out if how.resume and out is not None and (out / INDEX).is_file() else None
     kept: dict[int, Ended] = {}
     if left is not None:
-        if has_index(left / INDEX, hooks.note):
-            refuse_other(left / INDEX, index)
-        if (left / ANSWER).is_file():
+        changes = changes_of(left / INDEX, index, identity, how, hooks.note)
+        if not changes and (left / ANSWER).is_file():
             try:
                 return read_answer(left), left
             except InputError as error:
                 cut_aside(left / ANSWER, error, hooks.note)
-        kept = ended_cases(left, _MOST, hooks.note)
+        kept = {} if changes else ended_cases(left, _MOST, hooks.note)
     plan = replace(plan, recorded=check(_edges(cases, space), plan, hooks))
     columns = table_columns(campaign, [cases.base], _values(cases, space))
     with closing(workers_of(campaign, cases, plan, how, hooks)) as workers:

@@ -12,7 +12,7 @@ from rich.table import Table
 
 from seatrial.cli.answer import answer
 from seatrial.cli.options import EngineName, Network, Out, engine_named
-from seatrial.cli.run_options import Cluster, Jobs, KeepName, NoReport, Resume
+from seatrial.cli.run_options import Cluster, Jobs, KeepName, NoReport, RerunChanged, Resume
 from seatrial.cli.show import console, print_notes, print_table
 from seatrial.cli.stopping import stoppable
 from seatrial.cli.watch import Watch
@@ -48,6 +48,7 @@ def ask(
     network: Network = False,
     keep: KeepName = None,
     resume: Resume = False,
+    rerun_changed: RerunChanged = False,
     no_report: NoReport = False,
 ) -> None:
     """Ask a campaign a question: it runs the trials that the answer needs."""
@@ -56,7 +57,8 @@ def ask(
     if network:
         allow_network()
     campaign = load_campaign(name)
-    how = How(engine_named(engine), jobs, cluster, keep_named(keep, "--keep"), resume)
+    keep_kind = keep_named(keep, "--keep")
+    how = How(engine_named(engine), jobs, cluster, keep_kind, resume, rerun_changed)
     with stoppable() as stop, Watch(campaign.read_from.name) as watch:
         ended_count = failed = 0
         expected = 1

@@ -15,6 +15,7 @@ from pymavlink import mavparm
 from pymavlink.dialects.v20 import all as mavlink
 
 from seatrial.errors import InputError
+from seatrial.links.servos import read_servos
 from seatrial_kits.mavlink.parameters.ardupilot import ardupilot_parameters
 from seatrial_kits.mavlink.parameters.definition import (
     INT8,
@@ -25,7 +26,6 @@ from seatrial_kits.mavlink.parameters.definition import (
 )
 from seatrial_kits.mavlink.parameters.file import ParameterFile
 from seatrial_kits.mavlink.parameters.px4 import px4_parameters
-from seatrial_kits.mavlink.parameters.servo import read_servos
 from seatrial_kits.mavlink.parameters.table import ParameterTable
 from seatrial_kits.mavlink.parameters.tunable import tunable_parameters, with_tunables
 from seatrial_kits.mavlink.settings import COMPASS_CHECK, GPS_CHECK, Settings

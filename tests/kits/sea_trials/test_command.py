@@ -28,7 +28,7 @@ def run(tmp_path_factory):
     folder = tmp_path_factory.mktemp("trials")
     (folder / "short.toml").write_text(CAMPAIGN, "utf-8")
     settings = ("autopilot.manoeuvre.window=10 s", "autopilot.manoeuvre.turn=400 deg",
-                "autopilot.manoeuvre.criteria=imo")  # fmt: skip
+                "autopilot.manoeuvre.criteria=imo", "variant=loaded")  # fmt: skip
     done = seatrial(
         "run", "short.toml", "--vehicle", "otter", "--engine", "direct", "-o", "runs",
         *(part for text in settings for part in ("--set", text)), cwd=folder,

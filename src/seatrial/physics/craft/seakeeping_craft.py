@@ -14,9 +14,10 @@ import numpy as np
 from ...errors import InputError
 from ...model.component import Parameter
 from ...model.plant import State
+from ...model.ports import Output
 from ...whole_file import stamp
 from ..sea.loads import Response
-from ..sea.memory import GROUPS, MODES, Memory, memories
+from ..sea.memory import GROUPS, MODES, MOTIONS, Memory, memories
 from ..sea.panel_files import read_panels
 from ..sea.panels import PanelTables
 from .context import Context
@@ -56,7 +57,8 @@ class SeakeepingCraft(MarineCraft):
     ``panel_file`` is Capytaine's NetCDF or WAMIT's .1 with its .3 beside it (`sea.panel_files`).
     From it come A_inf (``added_mass``, ``added_inertia``, ``added_coupling``, which the vehicle's
     file leaves out), the memory K as states (`sea.memory`, term ``radiation``), fitted at the
-    start, and in waves the excitation with its diffraction (term ``wave-loads``), no strips.
+    start (``radiation_missed`` says how nearly, motion by motion), and in waves the excitation with
+    its diffraction (term ``wave-loads``), no strips.
     ``linear_damping_force`` and its like then hold what is not potential flow: viscous damping,
     above all in roll. Restoring is the vehicle file's.
 
@@ -93,6 +95,14 @@ class SeakeepingCraft(MarineCraft):
     )
     memory_damping = Parameter(
         0.0, "rad/s", "R of the memory, lower half by rows; from panel_file", axes=_PAIRS
+    )
+
+    memory_missed = Parameter(
+        0.0, "1", "share of each motion's radiation that the memory misses; from panel_file",
+        axes=MOTIONS, min=0.0,
+    )  # fmt: skip
+    radiation_missed = Output(
+        "1", "share of each motion's radiation in the tables that the memory misses", axes=MOTIONS
     )
 
     memory = State(
@@ -134,7 +144,10 @@ class SeakeepingCraft(MarineCraft):
         driven = _coupling(p) @ velocity_through_water(rotation_matrix(x.attitude), nu, u)
         p_dot = driven - _damping(p) @ modes - p.memory_omega * springs
         memory = ca.vertcat(p_dot, p.memory_omega * modes)
-        return {**vars(changes), "memory": memory}, outputs
+        return {**vars(changes), "memory": memory}, {
+            **outputs,
+            "radiation_missed": p.memory_missed,
+        }
 
     # ------------------------------------------------------------------ inside
 
@@ -197,7 +210,11 @@ def _memories(path: Path, tables: PanelTables) -> list[Memory]:
 
 def _parameters(found: list[Memory]) -> dict[str, list[float]]:
     """Return the parameters of the memories of both groups."""
+    missed = np.zeros(len(MOTIONS))
+    for memory, group in zip(found, GROUPS, strict=True):
+        missed[[*group]] = memory.missed
     return {
+        "memory_missed": missed.tolist(),
         "memory_omega": np.concatenate([m.omega for m in found]).tolist(),
         "memory_coupling": np.concatenate([m.coupling.ravel() for m in found]).tolist(),
         "memory_damping": np.concatenate([m.damping[_ROWS, _COLUMNS] for m in found]).tolist(),

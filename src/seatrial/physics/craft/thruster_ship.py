@@ -1,4 +1,4 @@
-"""A ship that thrusters move in the horizontal plane, without damping."""
+"""A ship that thrusters move in the horizontal plane."""
 
 from __future__ import annotations
 
@@ -48,14 +48,19 @@ class ThrusterShip(LoadedCraft):
     ``model`` = "linear" is the exact linearisation of all this about rest at the origin with
     psi = 0, from the same expressions: eta' = nu, M nu' = tau.
 
+    ``drag`` (X_uu, Y_vv, N_rr) is that of the hull, axis by axis, on the right-hand side; the
+    source has none, and of the linear model it is 0:
+
+        -(X_uu |u| u, Y_vv |v| v, N_rr |r| r)
+
     tau = (X, Y, N): sums of the terms of ``force`` and ``moment``, N and N.m about the body
     origin, in body axes: thrusters, an environmental load; and what a tether or tow does.
 
-    In the sea of a trial nu in M nu' + C(nu) nu is that through the water, and the loads of waves
-    and wind are added to tau.
+    In the sea of a trial nu in M nu' + C(nu) nu and the drag is that through the water, and the
+    loads of waves and wind are added to tau.
 
-    Not modelled: damping of any kind (nothing ever comes to rest by itself), thrusters that
-    interact.
+    Not modelled: damping at low speed, drag that axes share, thrusters that interact. Without drag
+    nothing ever comes to rest by itself.
     """
 
     max_step = Parameter(0.1, "s", "longest integration sub-step", min=1e-6)
@@ -67,6 +72,10 @@ class ThrusterShip(LoadedCraft):
     Y_vdot = Parameter(0.0, "kg", "added mass in sway, negative")
     Y_rdot = Parameter(0.0, "kg.m", "added mass, sway from yaw and yaw from sway")
     N_rdot = Parameter(0.0, "kg.m2", "added inertia in yaw, negative")
+    drag = Parameter(
+        0.0, ("N.s2/m2", "N.s2/m2", "N.m.s2/rad2"), "quadratic drag of the hull, X_uu, Y_vv, N_rr",
+        axes="uvr", min=0.0,
+    )  # fmt: skip
 
     feedthrough: ClassVar = {**LoadedCraft.feedthrough, "acceleration": LOADS}
 
@@ -96,6 +105,7 @@ class ThrusterShip(LoadedCraft):
         tau = ca.vertcat(LoadedCraft.force.total(u), LoadedCraft.moment.total(u)) + pull
         tau = tau + sea_load(u)
         nu_r, carrying = carried(x.eta, x.nu, u)
+        tau = tau - p.drag * ca.fabs(nu_r) * nu_r
         nu_dot = ca.ldl_solve(tau - planar_coriolis((M @ nu_r)[:2], nu_r), *ca.ldl(M)) + carrying
         derivatives = {"eta": kinematics(x.eta, x.nu), "nu": nu_dot}
         motion = {**motion_outputs(x.eta, x.nu, nu_dot), **attached}

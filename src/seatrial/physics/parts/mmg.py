@@ -14,7 +14,8 @@ import casadi as ca
 from ..craft.polynomials import polynomial
 from .flow import STILL, held
 from .rudder import blade, in_race, straightened
-from .screws import open_water
+from .screws import all_quadrants, open_water
+from .wageningen import wageningen_b4_70
 
 SURGE_TERMS = ("vv", "vr", "rr", "vvvv")
 SWAY_TERMS = ("v", "r", "vvv", "vvr", "vrr", "rrr")
@@ -76,11 +77,24 @@ def propeller_load(flow: Flow, order: Any, p: SimpleNamespace) -> tuple[Screw, A
     most = ca.if_else(beta > 0, p.wake_change[0], p.wake_change[1])
     changed = 1 + (1 - ca.exp(-p.wake_change_rate * ca.fabs(beta))) * (most - 1)
     advance = (1 - p.propeller_wake) * changed * flow.u
-    slot = SimpleNamespace(diameter=p.propeller_diameter, advance_limit=p.propeller_advance_limit)
-    curves = ca.vertsplit(p.propeller_K_T), ca.vertsplit(p.propeller_K_Q)
-    thrust, torque = open_water(slot, p.water_density, rate / math.tau, advance, curves)
-    load = ca.vertcat((1 - p.propeller_deduction) * thrust, 0, 0)
+    thrust, torque = _characteristics(rate / math.tau, advance, p)
+    across = p.propeller_side_force * ca.if_else(rate < 0, ca.fmin(thrust, 0), 0)
+    along = (1 - p.propeller_deduction) * thrust
+    load = ca.vertcat(along, across, p.propeller_position * p.length * across)
     return Screw(rate, thrust, torque, advance), load
+
+
+def _characteristics(n: Any, advance: Any, p: SimpleNamespace) -> tuple[Any, Any]:
+    """Return thrust, N, and moment, N.m, at ``n``, 1/s, and the ``advance``, m/s."""
+    D, density = p.propeller_diameter, p.water_density
+    if p.propeller_curves == "four-quadrant":
+        thrust, torque = all_quadrants(
+            D, density, n, advance, wageningen_b4_70(), p.propeller_series_turn
+        )
+        return p.propeller_series_share[0] * thrust, p.propeller_series_share[1] * torque
+    slot = SimpleNamespace(diameter=D, advance_limit=p.propeller_advance_limit)
+    curves = ca.vertsplit(p.propeller_K_T), ca.vertsplit(p.propeller_K_Q)
+    return open_water(slot, density, n, advance, curves)
 
 
 def rudder_load(

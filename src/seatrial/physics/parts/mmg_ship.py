@@ -62,6 +62,13 @@ class MmgShip(ThreeDofCraft):
 
     C1 = ``wake_change_rate``, C2 = ``wake_change`` by the sign of beta_P.
 
+    ``propeller_curves`` = "four-quadrant": T and Q by `all_quadrants` with the series of
+    `wageningen_b4_70`, read at beta + ``propeller_series_turn`` and times
+    ``propeller_series_share``, which fit it to another pitch and blade area. A shaft that turns
+    astern pulls the stern aside (paddle-wheel effect), c = ``propeller_side_force``, T < 0:
+
+        Y_P = c T,   N_P = x_P Y_P:   c > 0 (right-handed) takes the stern to port
+
     **Rudder.** `in_race` with eta = D / H_R, u_R = eps times it, v_R = gamma_R U (beta - l_R' r'),
     gamma_R by the sign of that; F_N by `blade` with f_alpha = ``rudder_lift_slope``.
 
@@ -75,7 +82,8 @@ class MmgShip(ThreeDofCraft):
     In the sea of a trial its waves and wind and a tether or tow are further terms on the right.
 
     Not modelled: added resistance in waves, shallow water, heel and trim; side force of the
-    propeller; the engine, see `Motor`, and rudder machinery, see `RudderMachine`.
+    propeller ahead; the engine, see `Motor` and `MarineEngine`, and rudder machinery, see
+    `RudderMachine`.
 
     Raises InputError at the start for a mass matrix that is not positive definite, and for a
     propeller larger than the rudder's height.
@@ -120,6 +128,16 @@ class MmgShip(ThreeDofCraft):
     propeller_K_Q = Parameter(0.0, "1", "moment: K_Q = k0 + k1 J + k2 J^2", axes=("k0", "k1", "k2"))
     propeller_advance_limit = Parameter(
         1.6, "1", "J from which on the coefficients are held", min=0.0
+    )
+    propeller_curves = Parameter(
+        "open-water", "1", "of thrust and moment", choices=("open-water", "four-quadrant")
+    )
+    propeller_series_turn = Parameter(0.0, "rad", "of the four-quadrant series, in beta")
+    propeller_series_share = Parameter(
+        1.0, "1", "of the four-quadrant series that acts", axes=("C_T", "C_Q"), min=0.0
+    )
+    propeller_side_force = Parameter(
+        0.0, "1", "c, of the thrust astern: takes the stern to port, less than 0 to starboard"
     )
     propeller_deduction = Parameter(0.0, "1", "t_P: (1 - t_P) of the thrust acts", max=1.0)
     propeller_wake = Parameter(0.0, "1", "w_P0, wake fraction straight ahead", max=1.0)

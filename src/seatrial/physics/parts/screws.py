@@ -17,7 +17,6 @@ from typing import Any
 import casadi as ca
 
 from ..craft.context import Context, wrench
-from .coefficients import ORDER
 from .flow import STILL, held
 from .thrust import Drive, Push
 from .wageningen import wageningen_b as series
@@ -58,23 +57,40 @@ def four_quadrant(c: Context, drive: Drive) -> Push:
     shaft speed and advance; a0 alone is a force that depends on V only.
     """
     s, (n, rate) = drive.slot, _shaft(drive)
-    advance = _advance(c, drive)
-    blade = 0.7 * math.pi * n * s.diameter
+    advance, curves = _advance(c, drive), [ca.vertsplit(each) for each in (s.C_T, s.C_Q)]
+    thrust, moment = all_quadrants(s.diameter, c.parameters.density, n, advance, curves)
+    return _screwed(drive, thrust, moment, rate, advance)
+
+
+def all_quadrants(
+    diameter: Any,
+    density: Any,
+    n: Any,
+    advance: Any,
+    curves: Sequence[Sequence[Any]],
+    turn: Any = 0,
+) -> tuple[Any, Any]:
+    """Return thrust T, N, and moment Q, N.m, of `four_quadrant` by ``curves`` of C_T* and C_Q*.
+
+    ``n`` is the shaft speed, 1/s, ``advance`` V_a, m/s, of any sign; a curve has a0 ... aN, then
+    b1 ... bN, and is read at beta + ``turn``, rad.
+    """
+    blade = 0.7 * math.pi * n * diameter
     squared = advance**2 + blade**2
     speed = ca.sqrt(squared + STILL**2)
-    scale = c.parameters.density * math.pi / 8 * s.diameter**2 * squared
-    thrust, moment = (
-        scale * _harmonics(each, blade / speed, advance / speed) for each in (s.C_T, s.C_Q)
-    )
-    return _screwed(drive, thrust, moment * s.diameter, rate, advance)
+    cos, sin = blade / speed, advance / speed
+    cos, sin = cos * ca.cos(turn) - sin * ca.sin(turn), sin * ca.cos(turn) + cos * ca.sin(turn)
+    scale = density * math.pi / 8 * diameter**2 * squared
+    thrust, moment = (scale * _harmonics(each, cos, sin) for each in curves)
+    return thrust, moment * diameter
 
 
-def _harmonics(coefficients: Any, cos: Any, sin: Any) -> Any:
+def _harmonics(coefficients: Sequence[Any], cos: Any, sin: Any) -> Any:
     """Return the series at the angle with ``cos`` and ``sin``, by the addition theorems."""
     c, s = cos, sin
-    total = coefficients[0]
-    for k in range(1, ORDER + 1):
-        total += coefficients[k] * c + coefficients[ORDER + k] * s
+    total, order = coefficients[0], len(coefficients) // 2
+    for k in range(1, order + 1):
+        total += coefficients[k] * c + coefficients[order + k] * s
         c, s = c * cos - s * sin, s * cos + c * sin
     return total
 

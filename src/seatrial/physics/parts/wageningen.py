@@ -1,4 +1,4 @@
-"""Open-water characteristics of the Wageningen B series, by polynomials."""
+"""Characteristics of the Wageningen B series: open water by polynomials, four quadrants."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-DATA_FILES = ("wageningen_b.csv",)
+DATA_FILES = ("wageningen_b.csv", "wageningen_b4_70.csv")
 
 BLADES = (2.0, 7.0)
 PITCH_RATIOS = (0.5, 1.4)
@@ -34,6 +34,28 @@ def wageningen_b(blades: Any, pitch_ratio: Any, area_ratio: Any) -> tuple[list[A
 
 @cache
 def _terms() -> tuple[tuple[str, float, int, int, int, int], ...]:
-    _head, *lines = Path(__file__).with_name(*DATA_FILES).read_text("ascii").split()
-    rows = (line.split(",") for line in lines)
-    return tuple((name, float(C), int(s), int(t), int(u), int(v)) for name, C, s, t, u, v in rows)
+    return tuple(
+        (name, float(C), int(s), int(t), int(u), int(v))
+        for name, C, s, t, u, v in _rows(DATA_FILES[0])
+    )
+
+
+@cache
+def wageningen_b4_70() -> tuple[list[float], list[float]]:
+    """Return the series of C_T* and C_Q* of the propeller B4-70 with P/D 1.0, all four quadrants.
+
+    Coefficients a0 ... a20, b1 ... b20 of cos(k beta) and sin(k beta), as `all_quadrants` takes
+    them: W. P. A. van Lammeren, J. D. van Manen and M. W. C. Oosterveld, The Wageningen B-screw
+    series, Trans. SNAME 77 (1969), as the Marine Systems Simulator's users tabulate them.
+    """
+    curves: dict[str, tuple[list[float], list[float]]] = {"C_T": ([], []), "C_Q": ([], [])}
+    for name, _k, a, b in _rows(DATA_FILES[1]):
+        curves[name][0].append(float(a))
+        curves[name][1].append(float(b))
+    thrust, moment = ([*a, *b[1:]] for a, b in curves.values())
+    return thrust, moment
+
+
+def _rows(name: str) -> list[list[str]]:
+    _head, *lines = Path(__file__).with_name(name).read_text("ascii").split()
+    return [line.split(",") for line in lines]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.optimize import least_squares
@@ -18,6 +18,8 @@ GROUPS = ((0, 2, 4), (1, 3, 5))
 _EVALUATIONS = 1000
 """Fewer leave it to rounding how near the fit comes: sharp peaks of catamarans come last."""
 _LARGEST_ERROR = 0.2
+"""Of a motion: root mean square of what is missed of K_jj over the table, of that of K_jj."""
+MOTIONS = ("surge", "sway", "heave", "roll", "pitch", "yaw")
 _LARGEST_ACROSS = 0.02
 _PAIRS = np.tril_indices(3)
 _NETWORK = np.tril_indices(MODES)
@@ -38,6 +40,8 @@ class Memory:
     """R, rad/s, (modes, modes)."""
     coupling: Array
     """B, (modes, motions)."""
+    missed: Array
+    """Share of each motion's own K that the fit misses, (motions,): see `_LARGEST_ERROR`."""
 
     def response(self, omega: Array) -> Complex:
         """Return K(i w), (w, motions, motions)."""
@@ -52,24 +56,62 @@ def memories(omega: Array, added: Array, damping: Array, infinite: Array) -> lis
 
     ``omega`` (w,), rad/s, above 0 and rising; A and B of a panel code, (w, 6, 6); A_inf (6, 6),
     about one point of the centre plane. Raises InputError for tables that no memory gives: of a
-    hull without a centre plane, or of A, B and A_inf that do not belong together.
+    hull without a centre plane, or of A, B and A_inf that do not belong together, so that more
+    than a fifth of some motion's K is missed.
     """
     wanted = damping + 1j * omega[:, None, None] * (added - infinite)
     wanted = 0.5 * (wanted + wanted.transpose(0, 2, 1))
-    size = np.sqrt(np.abs(np.diagonal(wanted, axis1=1, axis2=2)).max(0))
-    size = np.where(size > 1e-6 * size.max(), size, np.inf)
-    wanted = wanted / np.outer(size, size)
-    if np.abs(wanted[:, GROUPS[0]][:, :, GROUPS[1]]).max() > _LARGEST_ACROSS:
+    own = np.abs(np.diagonal(wanted, axis1=1, axis2=2))
+    _require_centre_plane(wanted, own)
+    # A narrow peak gives its motion little weight: then all motions count by their mean.
+    for size in (own.max(0), 2.0 * np.sqrt(np.square(own).mean(0))):
+        found = _fitted_groups(omega, wanted, np.sqrt(size))
+        if all((memory.missed < _LARGEST_ERROR).all() for memory in found):
+            return found
+    raise InputError(_misses(found))
+
+
+def _require_centre_plane(wanted: Complex, own: Array) -> None:
+    size = _lasting(np.sqrt(own.max(0)))
+    across = wanted[:, GROUPS[0]][:, :, GROUPS[1]] / np.outer(
+        size[[*GROUPS[0]]], size[[*GROUPS[1]]]
+    )
+    if np.abs(across).max() > _LARGEST_ACROSS:
         raise InputError(
             "the radiated waves of surge, heave and pitch push the hull sideways: hulls alike on "
             "both sides of y = 0 are needed"
         )
+
+
+def _lasting(size: Array) -> Array:
+    """Return the sizes of motions, infinite for one that radiates nothing."""
+    return np.where(size > 1e-6 * size.max(), size, np.inf)
+
+
+def _fitted_groups(omega: Array, wanted: Complex, size: Array) -> list[Memory]:
+    """Return the memory of each group, fitted to K over ``size`` of its motions, (6,)."""
     found = []
-    for group in GROUPS:
-        memory = _fitted(omega, wanted[:, group][:, :, group])
-        lasting = np.where(np.isfinite(size[list(group)]), size[list(group)], 0.0)
-        found.append(Memory(memory.omega, memory.damping, memory.coupling * lasting))
+    for group in map(list, GROUPS):
+        scale = _lasting(size)[group]
+        memory = _fitted(omega, wanted[:, group][:, :, group] / np.outer(scale, scale))
+        back = np.where(np.isfinite(scale), scale, 0.0)
+        found.append(replace(memory, coupling=memory.coupling * back))
     return found
+
+
+def _misses(found: list[Memory]) -> str:
+    """Return what is wrong, with the share that is missed of each motion."""
+    missed = {
+        motion: share
+        for memory, group in zip(found, GROUPS, strict=True)
+        for motion, share in zip(group, memory.missed.tolist(), strict=True)
+    }
+    shares = ", ".join(f"{name} {missed[motion]:.0%}" for motion, name in enumerate(MOTIONS))
+    return (
+        f"added mass and damping do not belong together: a memory misses {shares} of them, and "
+        f"{_LARGEST_ERROR:.0%} of each is allowed; is the added mass at infinite frequency of the "
+        "same hull, are the frequencies those of its radiation, are irregular frequencies removed?"
+    )
 
 
 def _fitted(omega: Array, wanted: Complex) -> Memory:
@@ -89,15 +131,13 @@ def _fitted(omega: Array, wanted: Complex) -> Memory:
         max_nfev=_EVALUATIONS,
     )
     memory = network.memory(result.x)
-    off = np.abs(memory.response(omega) - wanted)
-    error = np.sqrt(np.square(off).mean() / np.square(np.abs(wanted)).mean())
-    if not error < _LARGEST_ERROR:
-        raise InputError(
-            f"added mass and damping do not belong together: no memory comes nearer than "
-            f"{error:.0%} of them; is the added mass at infinite frequency of the same hull, are "
-            "the frequencies those of its radiation, are irregular frequencies removed?"
-        )
-    return memory
+    own, off = (
+        np.square(np.abs(np.diagonal(k, axis1=1, axis2=2))).mean(0)
+        for k in (wanted, memory.response(omega) - wanted)
+    )
+    # A motion that radiates nothing misses nothing.
+    missed = np.sqrt(np.divide(off, own, out=np.zeros(3), where=own > 0.0))
+    return replace(memory, missed=missed)
 
 
 class _Network:
@@ -115,7 +155,7 @@ class _Network:
         """Return the memory that the parameters say."""
         w, coupling, root = self._parts(parameters)
         scale = self.middle
-        return Memory(w * scale, root @ root.T * scale, coupling * np.sqrt(scale))
+        return Memory(w * scale, root @ root.T * scale, coupling * np.sqrt(scale), np.zeros(3))
 
     def error(self, parameters: Array) -> Array:
         """Return what is off, real and imaginary."""

@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from ...errors import InputError, unknown
-from ...fmi.components.index import component_class
+from ...fmi.components.index import component_class, components
 from ...model.ports import Parameter
 from ..files import FileModel, Source, find_file, read_toml, validated
 from ..tunables import Tunable, TunableEntry, read_tunables
@@ -89,6 +89,12 @@ class Profile:
         ports = keys(group, self.tables(group)[name]["kind"])
         found = [(getattr(entry, k), p) for k, p in ports.items() if p.role == "tunables"]
         return tuple(each for table, port in found for each in read_tunables(table, port))
+
+    def assume(self, section: str) -> None:
+        """Add a link ``links.KIND`` that the profile lacks, with its kind's own values."""
+        kind = section.removeprefix("links.")
+        if section.startswith("links.") and kind in components().names():
+            self.file.links.setdefault(kind, {"kind": kind})
 
     def source(self, section: str) -> str:
         """Return where a section's values come from, of a link without a source those of home.
@@ -225,6 +231,9 @@ class Profiles:
     def find(self, written: str, where: str) -> tuple[Profile, str]:
         """Return the profile and the section of "SECTION" or "PROFILE:SECTION".
 
+        A link ``links.KIND?`` that the profile does not have is one of that kind with its own
+        values, and what identity, home, actuators and sensors say.
+
         Raises InputError, which begins with ``where``, if there is no profile to look in, or no
         such section in it: an autopilot may need what a vehicle's profile lacks.
         """
@@ -235,6 +244,9 @@ class Profiles:
                 f"'hydrone:{written}'"
             )
         profile = self._load(name if colon else str(self._own))
+        if section.endswith("?"):
+            section = section.removesuffix("?")
+            profile.assume(section)
         if section not in profile.sections():
             raise InputError(f"{where}: {profile.lacks(section)}")
         return profile, section

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from contextlib import closing
-from dataclasses import asdict, dataclass, field, replace
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, Literal
 
@@ -14,16 +13,9 @@ from ...errors import InputError, unknown
 from ...plugins import Registry
 from ...system.fault_entry import FaultEntry
 from ...system.files import FileModel, Source, find_file, read_toml, validated
-from ...system.system import Engine
 from ..files.map_entry import MapEntry
 from ..files.trial import Trial, is_choice, load_trial
-from ..running.hooks import Hooks
-from ..running.output import claim_folder, write_json
-from ..running.resuming import has_index, kept_results
-from ..running.run import Result
-from ..running.supervised import Page
 from .case_list import FAULTS, Block, Cases
-from .cases import Case, case_folders, run_cases
 from .designs import Design, drawn
 from .questions import Questions
 from .stopping_rule import StoppingRule
@@ -33,11 +25,6 @@ CONDITIONS = Registry("seatrial.conditions", "condition of campaigns", {})
 """Functions of kits: of a `Trial`, why it does not apply to its rig, None if it does."""
 PAGES = Registry("seatrial.pages", "page of campaigns", {})
 """Functions of kits that write a page into a campaign's folder, and return it: `Written`."""
-_UNWRITTEN = 0.01
-"""Share of the cases in the index that may have ended since it was written, while others run.
-
-It bounds what is written in all by some hundred times the index, however many cases there are.
-"""
 
 
 class TrialEntry(FileModel):
@@ -207,97 +194,3 @@ def _applying(campaign: Campaign) -> Campaign:
         raise InputError(f"{campaign.read_from.path}: no trial applies: {reasons}")
     file = file.model_copy(update={"trials": [entry for _, entry in kept]})
     return replace(campaign, file=file, trials=tuple(t for t, _ in kept), left_out=left_out)
-
-
-def run_campaign(
-    campaign: Campaign,
-    out: Path | None,
-    *,
-    engine: Engine = "fmu",
-    jobs: int | None = None,
-    page: Page | None = None,
-    resume: bool = False,
-    hooks: Hooks | None = None,
-    done: Callable[[Case, Result], None] = lambda _case, _result: None,
-) -> tuple[Path, list[tuple[Case, Result]]]:
-    """Run every case into a folder of its own below ``out``, which must not hold anything yet.
-
-    None makes a new folder ``runs/NAME-DATE-TIME``. With ``resume`` ``out`` may be what this
-    campaign has left: cases that came to an end are kept, the others run again. ``jobs`` cases run
-    side by side, None: as many as there are cores; what they leave does not depend on it. ``page``
-    writes the report of each case, by its folder. ``done`` is called after each case, in the order
-    of the cases. Stops after the cases that were asked to stop. A case that ends its process has
-    failed.
-
-    Returns the folder and the results of the cases that began. Raises InputError for bad input, in
-    any case, and StoppedError, before the first one runs.
-    """
-    cases = campaign.cases()
-    left = out if resume and out is not None and (out / INDEX).is_file() else None
-    kept: dict[int, Result] = {}
-    if left is not None:
-        folders = case_folders(cases)
-        known = {f: (case.name, case.set) for f, case in zip(folders, cases, strict=True)}
-        note = (hooks or Hooks()).note
-        if has_index(left / INDEX, note):
-            found = kept_results(left / INDEX, known, note)
-            kept = {folders.index(r.folder.name): r for r in found}
-    results = dict(kept)
-    folder = Path()
-    written = -1
-
-    def write() -> None:
-        nonlocal written
-        _write_index(campaign, folder, cases, results)
-        written = len(results)
-
-    def begin() -> Path:
-        nonlocal folder
-        folder = left or claim_folder(out, campaign.read_from.name, INDEX)
-        write()
-        return folder
-
-    def ended(number: int, result: Result) -> None:
-        results[number] = result
-        if len(results) - written > written * _UNWRITTEN:
-            write()
-
-    finished = run_cases(
-        cases, begin, engine=engine, jobs=jobs, page=page, hooks=hooks, kept=kept, ended=ended
-    )
-    try:
-        with closing(finished):
-            for number, result in finished:
-                done(cases[number], result)
-    finally:
-        if 0 <= written < len(results):
-            write()
-    return folder, [(cases[n], results[n]) for n in sorted(results)]
-
-
-def _write_index(
-    campaign: Campaign, out: Path, cases: Sequence[Case], results: Mapping[int, Result]
-) -> None:
-    rows = [
-        {
-            "name": cases[number].name,
-            "folder": result.folder.name,
-            "trial": cases[number].trial_name,
-            "set": cases[number].set,
-            "passed": result.passed,
-            "status": result.status,
-            "verdicts": [
-                {"name": name, "check": check, **asdict(verdict)}
-                for name, check, verdict in result.verdicts
-            ],
-        }
-        for number, result in sorted(results.items())
-    ]
-    index = {
-        "name": campaign.read_from.name,
-        "title": campaign.file.title,
-        "page": campaign.file.page,
-        "left_out": campaign.left_out,
-        "cases": rows,
-    }
-    write_json(out / INDEX, index, synced=True)

@@ -2,89 +2,154 @@
 
 from __future__ import annotations
 
+import ast
 import re
-from collections.abc import Iterator
-from pathlib import Path, PurePath
+from collections.abc import Iterator, Mapping
+from itertools import product
+from pathlib import Path
 from typing import Any
 
+from ...errors import InputError
+from ...fmi.building.bundle import bundled
+from ...fmi.components.source import ComponentSource, find_source
 from ...kits import kits
 from ...shipped import content_of, shipped_folder
 from ...system.files import find_file, read_toml
 from ...system.parameters import split_reference
 from ...system.profile.data_sheets import data_sheets_of
-from ...system.rig import Rig
+from ...system.rig import Placed, Rig
 from ...vehicle_folders import FOLDERS
+from ..files.trial import Trial, is_choice
 from .campaign import Campaign
 
 _SHIPPED = ("fmus", "harness", "hil_profiles", "vehicles")
 _NAMED = re.compile(r".+?\.(?:fmu|py|toml)(?=[.:]|$)")
 """The file in ``boat.py:Boat`` and ``boat.toml.hull``."""
+_SKETCH = ".ino"
+_MODULE = ".py"
 
 
 def needed_files(campaign: Campaign) -> list[Path]:
-    """Return a user's files among those of a campaign: trials, rigs, vehicles, profiles.
+    """Return a user's files and folders that a campaign needs, for another machine.
 
-    With them comes what they name by a relative path that leads out of their own folder: files and
-    folders. What is beside them is found with them; an absolute path is the same wherever it is
-    read. Shipped files are not among them. A vehicle or profile that is found by its name below
-    the current folder brings that with it. Trials are looked at as they are, not with what cases
-    choose in them.
+    Those that decide its cases (`deciding_files`), but not those named by an absolute path, which
+    is the same wherever it is read; with the current folder where a vehicle or profile is found by
+    its name below that.
     """
-    ours = [shipped_folder(each).resolve() for each in _SHIPPED]
-    ours += [content_of(kit).resolve() for kit in kits().found]
-    sources = [campaign.read_from]
-    pending: list[Path] = []
+    found = {
+        path: None
+        for trial in campaign.trials
+        for path in deciding_files(campaign, trial, is_absolute_too=False)
+    }
+    here = Path.cwd().resolve()
     for trial in campaign.trials:
-        sources += [trial.read_from, trial.rig.read_from, *trial.rig.sources]
-        pending += _of_components(trial.rig)
-    pending += [source.path.resolve() for source in sources]
-    found: dict[Path, None] = {}
-    while pending:
-        path = pending.pop()
-        if path not in found and not any(path.is_relative_to(folder) for folder in ours):
-            found[path] = None
-            pending += _named_elsewhere(path)
+        for kind, name, path in _by_name(trial.rig):
+            is_below = path.parent in (here / kind, here / FOLDERS / name)
+            if is_below and not name.endswith(".toml"):
+                found[here] = None
     return list(found)
 
 
-def _of_components(rig: Rig) -> Iterator[Path]:
-    """Yield the files of vehicles and profiles, which may be below the current folder."""
+def deciding_files(campaign: Campaign, trial: Trial, *, is_absolute_too: bool = True) -> list[Path]:
+    """Return the user's files that decide the cases of one of a campaign's trials, and folders.
+
+    The campaign, the trial, its rigs by all choices that cases make, vehicles, profiles and their
+    data sheets, components with the modules that they import, FMUs; and files and folders that a
+    text in one of these names by a path from its own folder, of a sketch its whole folder. Shipped
+    files, and those of kits, are not among them.
+    """
+    ours = [shipped_folder(each).resolve() for each in _SHIPPED]
+    ours += [content_of(kit).resolve() for kit in kits().found]
+    others = {each.read_from.path.resolve() for each in campaign.trials if each is not trial}
+    pending = [campaign.read_from.path.resolve()]
+    pending += _named_in(campaign.changes, Path.cwd(), is_absolute_too)
+    for chosen in _by_choices(campaign, trial):
+        scenario = [] if chosen.scenario is None else [chosen.scenario.read_from]
+        sources = [chosen.read_from, chosen.rig.read_from, *chosen.rig.sources, *scenario]
+        pending += [source.path.resolve() for source in sources]
+        pending += [path for _, _, path in _by_name(chosen.rig)]
+        for placed in chosen.rig.components.values():
+            pending += _of_code(placed)
+    found: dict[Path, None] = {}
+    while pending:
+        path = pending.pop()
+        is_ours = any(path.is_relative_to(folder) for folder in ours)
+        if path not in found and path not in others and not is_ours:
+            found[path] = None
+            pending += _named_by(path, is_absolute_too)
+    return list(found)
+
+
+def _by_choices(campaign: Campaign, trial: Trial) -> Iterator[Trial]:
+    """Yield a trial with each combination of choices that the campaign's cases make."""
+    blocks = [block for block in campaign.cases().blocks if block.base.name == trial.name]
+    for block in blocks:
+        values = {key: each for key, each in block.grid.items() if is_choice(key)}
+        drawn = {tuple((k, v) for k, v in row.items() if is_choice(k)) for row in block.rows}
+        for picked in product(*values.values()):
+            for row in sorted(drawn):
+                changes = dict(zip(values, picked, strict=True)) | dict(row)
+                yield block.base.changed(changes, block.where) if changes else block.base
+
+
+def _by_name(rig: Rig) -> Iterator[tuple[str, str, Path]]:
+    """Yield kind, name and file of vehicles, profiles and data sheets of a rig's components."""
     for placed in rig.components.values():
         folder = placed.scope.read_from.path.parent
         if placed.entry.parameters:
             name, _ = split_reference(placed.entry.parameters, placed.entry.fmu)
-            yield from _found("vehicles", name, folder)
+            yield "vehicles", name, find_file("vehicles", name, folder).resolve()
         own, _, section = (placed.entry.profile or "").rpartition(":")
         if profile := own or (section and placed.scope.file.profile):
-            yield from _found("hil_profiles", profile, folder)
-            yield from data_sheets_of(find_file("hil_profiles", profile, folder))
+            file = find_file("hil_profiles", profile, folder).resolve()
+            yield "hil_profiles", profile, file
+            for sheet in data_sheets_of(file):
+                yield "hil_profiles", sheet.name, sheet.resolve()
 
 
-def _found(kind: str, name: str, folder: Path) -> Iterator[Path]:
-    path, here = find_file(kind, name, folder).resolve(), Path.cwd().resolve()
-    yield path
-    is_below = path.parent in (here / kind, here / FOLDERS / name)
-    if is_below and not name.endswith(".toml") and not _is_shipped(path):
-        yield here
-
-
-def _is_shipped(path: Path) -> bool:
-    return any(path.is_relative_to(shipped_folder(each).resolve()) for each in _SHIPPED)
-
-
-def _named_elsewhere(path: Path) -> Iterator[Path]:
-    if path.suffix != ".toml" or not path.is_file():
+def _of_code(placed: Placed) -> Iterator[Path]:
+    """Yield the file of an FMU or table, or those of a user's component, with what it imports."""
+    try:
+        source = find_source(placed.entry.fmu, placed.scope.read_from.path.parent)
+        if not isinstance(source, ComponentSource):
+            yield source.resolve()
+        elif source.folder is not None:
+            folder = source.folder.resolve()
+            read = (path.resolve() for path in bundled(source).read)
+            yield from (path for path in read if path.is_relative_to(folder))
+    except InputError:  # of a component that cannot be built: the run says it
         return
-    for text in _texts(read_toml(path)[0]):
+
+
+def _named_by(path: Path, is_absolute_too: bool) -> Iterator[Path]:
+    """Yield what a file names by a path from its folder."""
+    if path.suffix == ".toml" and path.is_file():
+        yield from _named_in(read_toml(path)[0], path.parent, is_absolute_too)
+    elif path.suffix == _MODULE and path.is_file():
+        try:
+            nodes = ast.walk(ast.parse(path.read_bytes()))
+        except (SyntaxError, ValueError):
+            return
+        constants = [node.value for node in nodes if isinstance(node, ast.Constant)]
+        yield from _named_in(constants, path.parent, is_absolute_too)
+
+
+def _named_in(content: Any, folder: Path, is_absolute_too: bool) -> Iterator[Path]:
+    for text in _texts(content):
         match = _NAMED.match(text)
         name = match[0] if match else text
-        if ".." in PurePath(name).parts and (named := (path.parent / name).resolve()).exists():
-            yield named
+        try:
+            named = (folder / name).resolve()
+            is_there = Path(name).name not in ("", ".", "..") and named.exists()
+        except (OSError, ValueError):  # of a text that can be no path
+            continue
+        if is_there and (is_absolute_too or not Path(name).is_absolute()):
+            yield named.parent if named.suffix == _SKETCH else named
 
 
 def _texts(content: Any) -> Iterator[str]:
     if isinstance(content, str):
         yield content
-    elif isinstance(content, (dict, list)):
-        for value in content.values() if isinstance(content, dict) else content:
+    elif isinstance(content, (Mapping, list)):
+        for value in content.values() if isinstance(content, Mapping) else content:
             yield from _texts(value)

@@ -13,8 +13,8 @@ from contextlib import chdir
 from functools import lru_cache
 from pathlib import Path, PurePosixPath
 
-from ... import __version__
 from ...errors import InputError
+from ..records.program import program
 from .campaign import Campaign, load_campaign
 from .needed import needed_files
 
@@ -36,8 +36,8 @@ def packed(campaign: Campaign) -> bytes:
     place = here.relative_to(top).as_posix() if top and here.is_relative_to(top) else "."
     stream, total = io.BytesIO(), 0
     with tarfile.open(fileobj=stream, mode="w", format=tarfile.PAX_FORMAT) as archive:
-        changes = json.dumps(dict(campaign.changes))
-        _add(archive, "campaign", f"{__version__}\n{name}\n{place}\n{changes}".encode())
+        said = (json.dumps(program()), name, place, json.dumps(dict(campaign.changes)))
+        _add(archive, "campaign", "\n".join(said).encode())
         for path in _files(top) if top is not None else ():
             assert top is not None
             data = path.read_bytes()
@@ -54,7 +54,8 @@ def packed(campaign: Campaign) -> bytes:
 def unpacked(data: bytes) -> tuple[Campaign, Path]:
     """Return the campaign of an archive, and the folder to be in while it runs; once per process.
 
-    Raises InputError, also if another version of seatrial has packed it.
+    Raises InputError, also if another seatrial has packed it, or one with other libraries
+    (`program`).
     """
     return _unpacked(hashlib.sha256(data).hexdigest(), data)
 
@@ -69,15 +70,22 @@ def _unpacked(_sha256: str, data: bytes) -> tuple[Campaign, Path]:
     folder = Path(_folders[-1].name)
     with tarfile.open(fileobj=io.BytesIO(data)) as archive:
         archive.extractall(folder, filter="data")
-    version, name, place, changes = (folder / "campaign").read_text("utf-8").split("\n")
-    if version != __version__:
-        raise InputError(f"the worker has seatrial {__version__}, the campaign is of {version}")
+    packer, name, place, changes = (folder / "campaign").read_text("utf-8").split("\n")
+    _refuse_other(json.loads(packer))
     top = folder / "files"
     home = top / place
     home.mkdir(parents=True, exist_ok=True)
     with chdir(home):
         path = str(top / name) if name.endswith(".toml") else name
         return load_campaign(path, json.loads(changes)), home
+
+
+def _refuse_other(packer: dict[str, str]) -> None:
+    """Raise InputError if this program is not the one that has packed a campaign."""
+    here = program()
+    for name in dict.fromkeys([*packer, *here]):
+        if (there := packer.get(name, "none")) != (own := here.get(name, "none")):
+            raise InputError(f"a worker has {name} {own}, and the campaign is of {there}")
 
 
 def pack_folder(folder: Path) -> bytes:

@@ -7,7 +7,7 @@ import json
 import math
 import shutil
 from collections import deque
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, wait
 from contextlib import closing
 from dataclasses import dataclass, field, replace
@@ -15,7 +15,6 @@ from itertools import islice
 from pathlib import Path
 from typing import Any, get_args
 
-from ... import __version__
 from ...errors import InputError, unknown
 from ...shipped import provided_folders
 from ...system.system import Engine
@@ -23,7 +22,7 @@ from ..records.run_schema import CAMPAIGN, checked_json
 from ..running.hooks import Hooks
 from ..running.measuring import Measured
 from ..running.output import claim_folder, write_json
-from ..running.resuming import cut_aside, has_index
+from ..running.resuming import Note, cut_aside, has_index, set_aside
 from .asked import Asked
 from .campaign import INDEX, Campaign
 from .case_list import Cases
@@ -33,6 +32,7 @@ from .columns import columns_of
 from .ended import Ended
 from .ended_log import ENDED_LOG, EndedLog, ended_cases
 from .evaluator import Keep, Plan
+from .identity import IDENTITY, Changes, Identity, changes_since, identity_of
 from .sampled_checks import check
 from .shipment import unpack_folder
 from .stopping_rule import StoppingRule
@@ -57,6 +57,8 @@ class How:
     keep: Keep | None = None
     """In place of what the campaign says."""
     resume: bool = False
+    rerun_changed: bool = False
+    """With ``resume``: cases of trials whose files have changed run again, or are refused."""
 
     def __post_init__(self) -> None:
         if self.cluster is not None:
@@ -124,18 +126,18 @@ def run_sweep(
     arrow()
     cases, file = campaign.cases(), campaign.file
     plan = Plan(how.engine, how.keep or file.keep or "all", file.samples)
-    index = index_of(campaign, how.engine, len(cases))
+    identity = identity_of(campaign)
+    index = index_of(campaign, identity, how.engine, len(cases))
     left = out if how.resume and out is not None and (out / INDEX).is_file() else None
     kept: dict[int, Ended] = {}
     if left is not None:
-        if has_index(left / INDEX, hooks.note):
-            refuse_other(left / INDEX, index)
-        if (left / RESULTS).is_file() and not (left / ENDED_LOG).is_file():
+        changes = changes_of(left / INDEX, index, identity, how, hooks.note)
+        if not changes and (left / RESULTS).is_file() and not (left / ENDED_LOG).is_file():
             try:
                 return _summary(left, len(cases))
             except InputError as error:
                 cut_aside(left / RESULTS, error, hooks.note)
-        kept = ended_cases(left, len(cases), hooks.note)
+        kept = without_touched(ended_cases(left, len(cases), hooks.note), cases, changes, left)
     columns = columns_of(campaign)
     plan = replace(plan, recorded=check(cases, plan, hooks))
     with closing(workers_of(campaign, cases, plan, how, hooks)) as workers:
@@ -263,13 +265,12 @@ class Sweep:
 
 
 def index_of(
-    campaign: Campaign, engine: Engine, count: int, question: Any = None
+    campaign: Campaign, identity: Identity, engine: Engine, count: int, question: Any = None
 ) -> dict[str, Any]:
     """Return the index of a campaign's folder, or of a question's, without its cases."""
     file = campaign.file.model_dump(exclude={"title", "keep", "samples", "ask", "map"})
-    sources = [s.sha256 for t in campaign.trials for s in (t.read_from, t.rig.read_from)]
     asked = [] if question is None else [question]
-    said = json.dumps([__version__, engine, file, sources, *asked], default=str)
+    said = json.dumps([engine, file, *asked], default=str)
     drawn = campaign.file.map if question is None else None
     return {
         "name": campaign.read_from.name,
@@ -280,6 +281,7 @@ def index_of(
         "count": count,
         "map": None if drawn is None else drawn.model_dump(),
         "of": hashlib.sha256(said.encode()).hexdigest(),
+        IDENTITY: identity.content(),
     }
 
 
@@ -290,13 +292,36 @@ def _called(path: Path) -> str:
     return path.stem if is_named else path.name
 
 
-def refuse_other(path: Path, index: dict[str, Any]) -> None:
+def refuse_other(path: Path, index: Mapping[str, Any]) -> None:
     """Raise InputError for the index of another campaign."""
     if checked_json(path, CAMPAIGN).get("of") != index["of"]:
         raise InputError(
-            f"{path}: it is of another campaign, or of this one before its files changed: name "
-            "the folder that this campaign has left, or another one without --resume"
+            f"{path}: it is of another campaign, of this one before its file changed, or of "
+            "another engine: name the folder that this campaign has left, or another one without "
+            "--resume"
         )
+
+
+def changes_of(
+    path: Path, index: Mapping[str, Any], identity: Identity, how: How, note: Note
+) -> Changes:
+    """Return what has changed since a folder's index was written (`changes_since`).
+
+    Raises InputError for the index of another campaign.
+    """
+    if not has_index(path, note):
+        return Changes((), {})
+    refuse_other(path, index)
+    return changes_since(path, identity, note, rerun_changed=how.rerun_changed)
+
+
+def without_touched(
+    kept: dict[int, Ended], cases: Sequence[Case], changes: Changes, folder: Path
+) -> dict[int, Ended]:
+    """Return the cases that changes do not touch; folders of the others are set aside."""
+    touched = {n for n in kept if changes.touches(cases[n].trial_name)}
+    set_aside([folder / kept[n].folder for n in sorted(touched) if kept[n].folder])
+    return {n: ended for n, ended in kept.items() if n not in touched}
 
 
 def _summary(folder: Path, planned: int) -> Summary:

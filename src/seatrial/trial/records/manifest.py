@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import hashlib
-import importlib.metadata
-import platform
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -17,18 +15,17 @@ from ...system.part import Part
 from ...system.system import Engine, System
 from ...system.values import storable
 from ..files.trial import Trial
+from .program import versions
 
-_LIBRARIES = ("casadi", "fmpy", "numpy", "pint", "pythonfmu", "scipy")
 _TYPES = {float: "Real", int: "Integer", bool: "Boolean", str: "String", bytes: "Binary"}
 
 
 def manifest(trial: Trial, system: System, engine: Engine) -> dict[str, Any]:
     """Return the manifest's content: same content, same bytes of ``signals.csv``."""
-    versions = {name: importlib.metadata.version(name) for name in _LIBRARIES}
     return {
         "format": 1,
         "seatrial": __version__,
-        "versions": {"python": platform.python_version(), **versions},
+        "versions": versions(),
         "trial": {**_file(trial.read_from), "title": trial.file.title},
         "rig": {**_file(trial.rig.read_from), "title": trial.rig.file.title},
         **_composition(trial, system),

@@ -262,6 +262,11 @@ class _Case(_Entry):
     verdicts: list[_CaseVerdict]
 
 
+class _Identity(_Entry):
+    program: dict[str, str]
+    files: dict[str, dict[str, str]]
+
+
 class _Campaign(_Entry):
     name: str
     file: str | None = None
@@ -273,6 +278,7 @@ class _Campaign(_Entry):
     page: str | None = None
     left_out: dict[str, str] = Field(default_factory=dict)
     map: MapEntry | None = None
+    identity: _Identity | None = None
 
 
 class _Closed(BaseModel):

@@ -1,4 +1,4 @@
-"""``seatrial identify manoeuvres``: a vehicle's parameters from logs of standard manoeuvres."""
+"""``seatrial calibrate``: a vehicle's parameters from logs of standard manoeuvres."""
 
 from __future__ import annotations
 
@@ -29,8 +29,8 @@ from .vehicle_copy import write_copy
 _REJECTED = 1
 
 
-def manoeuvres(
-    vehicle: Annotated[str, typer.Argument(help="Name of the vehicle whose numbers are sought.")],
+def calibrate(
+    vehicle: Annotated[str, typer.Argument(help="Name of the vehicle.")],
     logs: Annotated[
         list[Path], typer.Argument(metavar="LOG...", help="Logs of manoeuvres, or run folders.")
     ],
@@ -42,9 +42,15 @@ def manoeuvres(
             help="Columns of the logs; orders are helm or yaw, and speed, or inputs of the craft.",
         ),
     ] = None,
+    checks: Annotated[
+        list[Path] | None,
+        typer.Option("--check", metavar="LOG", help="A log to evaluate the result, not fitted."),
+    ] = None,
     free: Annotated[
         list[str] | None,
-        typer.Option("--free", metavar="NAME,...", help="Parameters to identify (default: usual)."),
+        typer.Option(
+            "--free", metavar="NAME,...", help="Parameters to calibrate (default: usual)."
+        ),
     ] = None,
     variant: Annotated[
         str | None, typer.Option("--variant", help="Variant of the vehicle to start from.")
@@ -53,16 +59,19 @@ def manoeuvres(
         Path | None, typer.Option("--out", "-o", help="Folder of the result (default: runs/...).")
     ] = None,
 ) -> None:
-    """Identify a vehicle from standard manoeuvres; status 1 if the model is to be rejected."""
+    """Calibrate a vehicle by logs of manoeuvres; status 1 if the model is to be rejected."""
     craft = craft_of(vehicle, variant)
     names = [name.strip() for text in free or [] for name in text.split(",")]
     looked_for = craft.free(names)
-    passes = [read_pass(log, columns or [], lambda what: _unit(craft, what)) for log in logs]
-    notes = [note for each in passes for note in each.notes]
+    passes, checked = (
+        [read_pass(log, columns or [], lambda what: _unit(craft, what)) for log in each]
+        for each in (logs, checks or [])
+    )
+    notes = [note for each in (*passes, *checked) for note in each.notes]
     print_notes(notes)
     folder = claim_folder(out, f"{vehicle}-identified", REPORT)
     try:
-        found = manoeuvre_study(vehicle, passes, craft, looked_for, variant)
+        found = manoeuvre_study(vehicle, passes, craft, looked_for, variant, checked)
     except BaseException:
         shutil.rmtree(folder)
         raise

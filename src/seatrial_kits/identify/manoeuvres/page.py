@@ -39,7 +39,7 @@ def pass_rows(study: ManoeuvreStudy) -> list[tuple[str, ...]]:
             shown.rms(each) for each in (shown.before, shown.after)
         )
         rows.append((
-            shown.run.name,
+            shown.run.name if shown.is_fitted else f"{shown.run.name} (check)",
             *(f"{number(each, 3)} m" for each in (track, track_now)),
             *(f"{number(_DEGREES * each, 3)} deg" for each in (heading, heading_now)),
         ))  # fmt: skip
@@ -50,7 +50,7 @@ def write_page(study: ManoeuvreStudy, folder: Path, file: Path | None) -> Path:
     """Write ``report.html`` into a folder; ``file`` is the vehicle's that was written beside it."""
     page = render(
         "identification_manoeuvres.html.j2",
-        title=f"{study.vehicle} identified from manoeuvres",
+        title=f"{study.vehicle} calibrated from manoeuvres",
         accepted=study.accepted,
         parameters=None if file is None else file.relative_to(folder),
         verdicts=study.verdicts,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -17,13 +17,15 @@ from .craft import Craft
 from .identifiability import Identifiability, identifiability
 from .intervals import WITHIN, bootstrap, deviations
 from .passes import Pass
-from .prediction import motion_of
+from .prediction import Motion, motion_of
 from .problem import Problem, Solution
 from .replay import inputs_of
 
 _PRIOR = 0.5
 """Standard deviation of relative changes while it is not yet known which are identifiable."""
 _TURNED = math.radians(10.0)
+_TURNED_BACK = math.radians(90.0)
+"""Range of headings from which a current shows itself against a model's speed."""
 
 
 @dataclass(frozen=True)
@@ -63,6 +65,8 @@ class Shown:
     log: Vector
     before: Vector
     after: Vector
+    is_fitted: bool = True
+    """Whether the parameters were chosen by it; else it is there to evaluate them."""
 
     def rms(self, simulated: Vector) -> tuple[float, float]:
         """Return the root mean square distance of the track, m, and of the heading, rad."""
@@ -102,20 +106,27 @@ class ManoeuvreStudy:
 
 
 def manoeuvre_study(
-    vehicle: str, passes: Sequence[Pass], craft: Craft, free: Sequence[str], variant: str | None
+    vehicle: str,
+    passes: Sequence[Pass],
+    craft: Craft,
+    free: Sequence[str],
+    variant: str | None,
+    checks: Sequence[Pass] = (),
 ) -> ManoeuvreStudy:
     """Identify the parameters ``free`` of a vehicle from passes, each in a uniform current.
 
     Output error: every pass is simulated from its orders alone, and parameters, the current and
     the state at the first row of each pass are chosen so that north, east and heading are nearest
     to those of the log, each weighted by its own residual. Parameters that the passes do not show
-    (`identifiability`) keep the values of the file. Raises InputError as `inputs_of` and
+    (`identifiability`) keep the values of the file. ``checks`` are passes that choose no
+    parameter: they are simulated with those found. Raises InputError as `inputs_of` and
     `motion_of` do, and if the passes show no parameter.
     """
-    motions = [
-        motion_of(craft, run.record, inputs_of(craft, vehicle, variant, run)) for run in passes
-    ]
-    problem = Problem(craft, motions, free)
+
+    def motion(run: Pass) -> Motion:
+        return motion_of(craft, run.record, inputs_of(craft, vehicle, variant, run))
+
+    problem = Problem(craft, [motion(run) for run in passes], free)
     held = problem.solve(problem.named, problem.guess(), prior=_PRIOR)
     which = identifiability(held.jacobian, held.residual, problem.stretches, problem.named)
     if not set(which.shown) & set(problem.free):
@@ -131,13 +142,41 @@ def manoeuvre_study(
     currents = [name for name in which.shown if name not in problem.free]
     before = problem.solve(currents, start, scales=held.scales)
     rows = _rows(problem, final, which)
-    simulated = (problem.readings(each.unknowns) for each in (before, final))
-    shown = tuple(
-        Shown(run, motion.record.time, motion.measured, old, new)
-        for run, motion, old, new in zip(passes, motions, *simulated, strict=True)
-    )
+    shown = _shown(problem, passes, before, final)
+    if checks:
+        others = Problem(craft, [motion(run) for run in checks], free)
+        found = final.unknowns[: len(free)]
+        both = (_followed(others, each) for each in (np.zeros(len(free)), found))
+        shown += _shown(others, checks, *both, is_fitted=False)
     notes, verdicts = _notes(problem, final, which), _verdicts(craft, rows, shown)
     return ManoeuvreStudy(vehicle, craft, rows, tuple(notes), shown, tuple(verdicts))
+
+
+def _followed(problem: Problem, changes: Vector) -> Solution:
+    """Return passes with given relative changes of the parameters, and currents of their own.
+
+    A current is looked for where a pass turns; on a straight course it would be taken for a wrong
+    speed of the model.
+    """
+    start = problem.guess()
+    start[: len(changes)] = changes
+    currents = [
+        name
+        for motion, names in zip(problem.motions, problem.currents, strict=True)
+        for name in names
+        if np.ptp(motion.record.heading) > _TURNED_BACK
+    ]
+    return problem.solve(currents, start)
+
+
+def _shown(
+    problem: Problem, passes: Sequence[Pass], before: Solution, after: Solution, **given: bool
+) -> tuple[Shown, ...]:
+    simulated = (problem.readings(each.unknowns) for each in (before, after))
+    return tuple(
+        Shown(run, motion.record.time, motion.measured, old, new, **given)
+        for run, motion, old, new in zip(passes, problem.motions, *simulated, strict=True)
+    )
 
 
 def _rows(problem: Problem, final: Solution, which: Identifiability) -> tuple[Row, ...]:
@@ -210,13 +249,20 @@ def _verdicts(craft: Craft, rows: Sequence[Row], shown: Sequence[Shown]) -> list
         for low, high in [craft.limits(row.name)]
         if not low <= row.value <= high
     ]
-    fits = {each.run.name: each.fit for each in shown}
-    return [
+    fitted, checked = (
+        {each.run.name: each.fit for each in shown if each.is_fitted is which}
+        for which in (True, False)
+    )
+    found = [
         Verdict("the values are those of a craft", not outside, "; ".join(outside) or "in range"),
-        Verdict(
-            "the model follows the logs",
-            min(fits.values()) > LEAST_FIT,
-            f"{', '.join(f'{name} {100.0 * value:.1f} %' for name, value in fits.items())}, above "
-            f"{100.0 * LEAST_FIT:g} % is needed",
-        ),
+        _follows("the model follows the logs", fitted),
     ]
+    if checked:
+        found.append(_follows("the model follows logs it was not fitted to", checked))
+    return found
+
+
+def _follows(rule: str, fits: Mapping[str, float]) -> Verdict:
+    said = ", ".join(f"{name} {100.0 * value:.1f} %" for name, value in fits.items())
+    is_kept = min(fits.values()) > LEAST_FIT
+    return Verdict(rule, is_kept, f"{said}, above {100.0 * LEAST_FIT:g} % is needed")

@@ -66,7 +66,7 @@ def _with_default(text: str, variant: str) -> str:
 
 def _variant_lines(study: ManoeuvreStudy, file: VehicleFile, variant: str) -> Iterator[str]:
     base, table = study.craft.variant, study.craft.source[1]
-    logs = ", ".join(dict.fromkeys(shown.run.name for shown in study.shown))
+    logs = ", ".join(dict.fromkeys(shown.run.name for shown in study.shown if shown.is_fitted))
     yield ""
     yield f"# {variant}: {base or 'the numbers above'}, with parameters identified from {logs}"
     changes = dict(file.variants.get(base, {})) if base else {}

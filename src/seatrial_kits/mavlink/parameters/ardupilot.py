@@ -6,12 +6,13 @@ from collections.abc import Mapping
 
 from pymavlink.dialects.v20 import all as mavlink
 
+from seatrial.links.servos import Servo
+
 from ..settings import Settings
 from ..vehicle import Identity
 from .definition import INT8, INT16, INT32, REAL32, Definition, choice, fixed, real, whole
 from .joystick import joystick_parameters
 from .listed import ardupilot_listed
-from .servo import Servo
 
 # What the failsafe's numbers mean here. Those that prefer the way it came mean what ArduPilot
 # does if there is none.

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Collection
 
+from seatrial.links.servos import read_servos
+
 from ..settings import Settings
 from ..vehicle import Vehicle
 from .ardupilot import ardupilot_parameters
 from .file import ParameterFile
 from .px4 import px4_parameters
-from .servo import read_servos
 from .simulated_faults import fault_parameters
 from .simulation import simulation_parameters
 from .table import ParameterTable

@@ -1,7 +1,8 @@
-"""seatrial identify manoeuvres: from a log to a copy of the vehicle, and what is refused."""
+"""seatrial calibrate: from a log to a copy of the vehicle, and what is refused."""
 
 import json
 import tomllib
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -11,11 +12,14 @@ from seatrial.errors import InputError
 from seatrial.system.parameters import load_vehicle
 from seatrial_kits.identify.manoeuvres import command
 from seatrial_kits.identify.manoeuvres.passes import read_pass
+from seatrial_kits.identify.manoeuvres.replay import craft_of
+from seatrial_kits.identify.manoeuvres.study import manoeuvre_study
 from tests.command import seatrial
 
-from .passes_of import FOLDER
+from .passes_of import FOLDER, kvlcc2
 
 ZIG_ZAG = FOLDER / "kvlcc2_full_zigzag_20_20.csv"
+TURN = FOLDER / "kvlcc2_full_turn_p35_current.csv"
 COLUMNS = ("time=t,north=x,east=y,heading=psi", "rudder=port,propeller_order=1")
 
 
@@ -23,21 +27,23 @@ COLUMNS = ("time=t,north=x,east=y,heading=psi", "rudder=port,propeller_order=1")
 def folder(tmp_path_factory):
     """Return a folder with a log, with the rudder as the craft has it, and the result in it."""
     folder = tmp_path_factory.mktemp("identified")
-    rows = np.loadtxt(ZIG_ZAG, delimiter=",", skiprows=2)
-    table = np.column_stack((rows[:, :4], np.degrees(-rows[:, 7])))
-    head = "t,x,y,psi,port\ns,m,m,rad,deg"
-    np.savetxt(folder / "log.csv", table, delimiter=",", header=head, comments="")
+    for name, reference in (("log", ZIG_ZAG), ("turn", TURN)):
+        rows = np.loadtxt(reference, delimiter=",", skiprows=2)
+        table = np.column_stack((rows[:, :4], np.degrees(-rows[:, 7])))[:700]
+        head = "t,x,y,psi,port\ns,m,m,rad,deg"
+        np.savetxt(folder / f"{name}.csv", table, delimiter=",", header=head, comments="")
     return folder
 
 
 def identify(folder, *arguments, columns=COLUMNS):
     texts = (part for text in columns for part in ("--columns", text))
-    return seatrial("identify", "manoeuvres", "kvlcc2", "log.csv", *texts, *arguments, cwd=folder)
+    return seatrial("calibrate", "kvlcc2", "log.csv", *texts, *arguments, cwd=folder)
 
 
 @pytest.fixture(scope="module")
 def done(folder):
-    return identify(folder, "--free", "resistance,N.v,N.r", "--out", "found", "--json")
+    asked = ("--free", "resistance,N.v,N.r", "--check", "turn.csv", "--out", "found", "--json")
+    return identify(folder, *asked)
 
 
 def test_it_finds_the_numbers_of_the_file_from_a_record_of_them(done):
@@ -47,6 +53,17 @@ def test_it_finds_the_numbers_of_the_file_from_a_record_of_them(done):
     for name, published in (("resistance", 0.022), ("N.v", -0.137), ("N.r", -0.049)):
         assert found[name]["value"] == pytest.approx(published, rel=0.01)
     assert result["accepted"]
+    # A turn that it was not fitted to, in a current: 8 km of track, of which the rudder is rounded.
+    assert "turn.csv 100.0 %" in result["verdicts"][-1]["detail"]
+
+
+def test_a_log_that_was_not_fitted_may_reject_the_model():
+    run = kvlcc2("full_zigzag_20_20", last=150)
+    mirrored = replace(run, orders={**run.orders, "rudder": -run.orders["rudder"]})
+    found = manoeuvre_study("kvlcc2", [run], craft_of("kvlcc2", None), ["N.r"], None, [mirrored])
+    assert [verdict.passed for verdict in found.verdicts] == [True, True, False]
+    assert not found.accepted
+    assert [shown.is_fitted for shown in found.shown] == [True, False]
 
 
 def test_the_copy_is_the_vehicle_with_a_variant_and_all_else_as_it_was(done, folder):
@@ -78,7 +95,13 @@ def test_the_copy_is_found_by_name_and_has_the_numbers(done, folder):
 
 def test_the_page_shows_the_trial_again(done, folder):
     page = (folder / "found/report.html").read_text("utf-8")
-    for text in ("kvlcc2 identified from manoeuvres", "Model and logs", "N.r", "log.csv"):
+    for text in (
+        "kvlcc2 calibrated from manoeuvres",
+        "Model and logs",
+        "N.r",
+        "log.csv",
+        "turn.csv (check)",
+    ):
         assert text in page
 
 
@@ -129,7 +152,7 @@ def test_a_folder_that_is_not_empty_is_refused_before_anything_is_fitted(folder,
     monkeypatch.chdir(folder)
     monkeypatch.setattr(command, "manoeuvre_study", lambda *_: pytest.fail("it was fitted"))
     with pytest.raises(InputError, match="exists and is not an empty folder"):
-        command.manoeuvres("kvlcc2", [Path("log.csv")], list(COLUMNS), out=folder)
+        command.calibrate("kvlcc2", [Path("log.csv")], list(COLUMNS), out=folder)
 
 
 def test_what_fails_leaves_no_folder(folder, monkeypatch):
@@ -140,7 +163,7 @@ def test_what_fails_leaves_no_folder(folder, monkeypatch):
 
     monkeypatch.setattr(command, "manoeuvre_study", fails)
     with pytest.raises(InputError, match="no fit"):
-        command.manoeuvres("kvlcc2", [Path("log.csv")], list(COLUMNS), out=Path("failed"))
+        command.calibrate("kvlcc2", [Path("log.csv")], list(COLUMNS), out=Path("failed"))
     assert not (folder / "failed").exists()
 
 
@@ -151,10 +174,3 @@ def test_what_a_log_leaves_out_is_said(tmp_path):
     np.savetxt(tmp_path / "fixes.csv", rows, delimiter=",", header=head, comments="")
     (note,) = read_pass(tmp_path / "fixes.csv", [], lambda what: "1").notes
     assert note == "fixes.csv: positions of 0, 0 are left out, 1 of them: the receiver had no fix"
-
-
-def test_an_experiment_needs_no_name_of_the_command(tmp_path):
-    for words in (("no-such.toml",), ("experiment", "no-such.toml"), ("-o", "x", "no-such.toml")):
-        refused = seatrial("identify", *words, cwd=tmp_path)
-        assert refused.returncode == 2
-        assert "no-such.toml" in refused.stderr

@@ -1,0 +1,31 @@
+"""Bag of all that the link writes, as a recorder beside it would have it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from .definitions import type_store
+
+
+class Bag:
+    """A ROS 2 bag, MCAP inside, in the folder ``path``; times are those of the stamps, ns."""
+
+    def __init__(self, path: Path) -> None:
+        from rosbags.rosbag2 import StoragePlugin, Writer
+
+        self._writer = Writer(path, version=9, storage_plugin=StoragePlugin.MCAP)
+        self._writer.open()
+        self._connections: dict[str, Any] = {}
+
+    def write(self, topic: str, kind: str, message: Any, now_ns: int) -> None:
+        """Write a message of rosbags' class for the kind."""
+        store = type_store()
+        if topic not in self._connections:
+            self._connections[topic] = self._writer.add_connection(topic, kind, typestore=store)
+        data = store.serialize_cdr(message, kind)
+        self._writer.write(self._connections[topic], now_ns, data)
+
+    def close(self) -> None:
+        """Finish the bag: without that it cannot be read."""
+        self._writer.close()

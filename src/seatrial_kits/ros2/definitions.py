@@ -1,0 +1,58 @@
+"""Definitions of messages and services: the store of rosbags, and `interfaces`.
+
+A service ``package/srv/Name`` has two messages, ``package/msg/Name_Request`` and ``..._Response``
+in the store, each with the header that rmw_cyclonedds puts before the fields.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import Any
+
+from seatrial.errors import InputError
+
+from .interfaces import INTERFACES
+
+INSTALL = 'pip install "seatrial[ros2]"'
+_NO_FIELDS = "uint8 structure_needs_at_least_one_member\n"
+"""Of a message without any, as rosidl has it."""
+_HEADER = "uint64 client_guid\nint64 sequence_number\n"
+_PARTS = ("_Request", "_Response")
+
+
+@cache
+def type_store() -> Any:
+    """Return the store of ROS 2 Humble's types, with those of `INTERFACES`.
+
+    The fields of those messages are the same in later distributions. Raises InputError without
+    the package rosbags.
+    """
+    try:
+        from rosbags.typesys import Stores, get_types_from_msg, get_typestore
+    except ImportError:
+        raise InputError(f"ROS 2 needs rosbags, which is not installed: {INSTALL}") from None
+    store = get_typestore(Stores.ROS2_HUMBLE)
+    found: dict[str, Any] = {}
+    for name, text in INTERFACES.items():
+        package, group, short = name.split("/")
+        if group == "msg":
+            found |= get_types_from_msg(text, name)
+            continue
+        for part, fields in zip(_PARTS, text.split("---\n"), strict=True):
+            whole = _HEADER + (fields or _NO_FIELDS)
+            found |= get_types_from_msg(whole, f"{package}/msg/{short}{part}")
+    store.register(found)
+    return store
+
+
+def service_parts(kind: str) -> tuple[str, str]:
+    """Return the names in the store of a service's request and response."""
+    package, _, name = kind.split("/")
+    return f"{package}/msg/{name}_Request", f"{package}/msg/{name}_Response"
+
+
+def dds_name(kind: str) -> str:
+    """Return the name of a type in DDS, ``package::msg::dds_::Name_``."""
+    package, _, name = kind.split("/")
+    group = "srv" if name.endswith(_PARTS) else "msg"
+    return f"{package}::{group}::dds_::{name}_"

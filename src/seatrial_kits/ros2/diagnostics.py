@@ -1,0 +1,50 @@
+"""State of the link as diagnostic_msgs/DiagnosticArray, for rqt's robot monitor."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from .faults import NONE
+from .ports import Ros2Ports
+from .topics import Names
+
+_OK, _WARN = 0, 1
+
+
+def diagnostics(
+    link: Ros2Ports, names: Names, now_ns: int, acting: Mapping[str, str]
+) -> Mapping[str, Any]:
+    """Return what commands the vehicle, what was refused, and which faults act."""
+    vehicle = names.namespace.removeprefix("/")
+    failed = {unit: fault for unit, fault in acting.items() if fault != NONE}
+    counted = {"source": link.source, "refused": link.refused, "late": link.late}
+    spoilt = link.refused or link.late
+    return {
+        "header": {"stamp": now_ns},
+        "status": [
+            _status(
+                f"{vehicle}: commands",
+                "commands were refused or late" if spoilt else f"commanded by {link.source}",
+                _WARN if spoilt else _OK,
+                counted,
+            ),
+            _status(
+                f"{vehicle}: faults",
+                f"{len(failed)} injected" if failed else "none",
+                _WARN if failed else _OK,
+                failed,
+            ),
+        ],
+    }
+
+
+def _status(name: str, said: str, level: int, values: Mapping[str, Any]) -> Mapping[str, Any]:
+    pairs = [{"key": key, "value": str(value)} for key, value in values.items()]
+    return {
+        "name": name,
+        "message": said,
+        "level": level,
+        "hardware_id": "seatrial",
+        "values": pairs,
+    }

@@ -1,0 +1,101 @@
+"""Definitions that the stores of rosbags lack, by name: fields alone, of a service two parts.
+
+simulation_interfaces 1.x (Apache-2.0, https://github.com/ros-simulation/simulation_interfaces) and
+rcl_interfaces (Apache-2.0). A module, and no files: FMUs take modules along.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+INTERFACES: Mapping[str, str] = {
+    "rcl_interfaces/srv/SetParameters": """\
+Parameter[] parameters
+---
+SetParametersResult[] results
+""",
+    "simulation_interfaces/msg/Bounds": """\
+uint8 type
+geometry_msgs/Vector3[] points
+""",
+    "simulation_interfaces/msg/EntityCategory": """\
+uint8 category
+""",
+    "simulation_interfaces/msg/EntityFilters": """\
+string filter
+EntityCategory[] categories
+TagsFilter tags
+Bounds bounds
+""",
+    "simulation_interfaces/msg/EntityState": """\
+std_msgs/Header header
+geometry_msgs/Pose pose
+geometry_msgs/Twist twist
+geometry_msgs/Accel acceleration
+""",
+    "simulation_interfaces/msg/Result": """\
+uint8 result
+string error_message
+""",
+    "simulation_interfaces/msg/SimulationState": """\
+uint8 state
+""",
+    "simulation_interfaces/msg/SimulatorFeatures": """\
+uint16[] features
+string[] spawn_formats
+string custom_info
+""",
+    "simulation_interfaces/msg/TagsFilter": """\
+string[] tags
+uint8 filter_mode
+""",
+    "simulation_interfaces/srv/GetEntities": """\
+EntityFilters filters
+---
+Result result
+string[] entities
+""",
+    "simulation_interfaces/srv/GetEntitiesStates": """\
+EntityFilters filters
+---
+Result result
+string[] entities
+EntityState[] states
+""",
+    "simulation_interfaces/srv/GetEntityState": """\
+string entity
+---
+Result result
+EntityState state
+""",
+    "simulation_interfaces/srv/GetSimulationState": """\
+---
+SimulationState state
+Result result
+""",
+    "simulation_interfaces/srv/GetSimulatorFeatures": """\
+---
+SimulatorFeatures features
+""",
+    "simulation_interfaces/srv/ResetSimulation": """\
+uint8 scope
+---
+Result result
+""",
+    "simulation_interfaces/srv/SetEntityState": """\
+string entity
+EntityState state
+---
+Result result
+""",
+    "simulation_interfaces/srv/SetSimulationState": """\
+SimulationState state
+---
+Result result
+""",
+    "simulation_interfaces/srv/StepSimulation": """\
+uint64 steps 1
+---
+Result result
+""",
+}

@@ -1,0 +1,111 @@
+"""Outlet of messages: which are due at an instant, and their writers."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+from seatrial.model.component import NS
+
+from .bag import Bag
+from .message import message
+from .participant import Durability, Participant, Writer
+from .ports import Ros2Ports
+from .published import MEASURED, Fields, Here, leg, odometry, places, transforms
+from .topics import LATCHED, PUBLISHED, Names
+
+_OVERDUE = 1.5
+"""Periods of a sensor after which a measurement that did not change is written again."""
+
+
+class Outlet:
+    """Writers of one vehicle's topics, made as there is something to write.
+
+    The clock goes out at every instant, the truth every ``truth_period``, a measurement when it
+    changes, and `_OVERDUE` periods of its sensor after that: one that is stuck is seen. In an
+    instant the clock comes last, and odometry before it: a node that a timer or the odometry
+    wakes has been sent all else.
+    """
+
+    def __init__(self, participant: Participant, names: Names) -> None:
+        self._participant, self._names = participant, names
+        self._writers: dict[str, Writer | None] = {}
+        self._last: dict[str, tuple[Fields, int]] = {}
+        self._truth_ns, self._leg = -(10**18), 0
+        self.bag: Bag | None = None
+        """Gets all that is written, if there is one."""
+        self._written: list[tuple[Writer, Any]] = []
+        """What the last instant wrote."""
+
+    def write(self, link: Ros2Ports, here: Here) -> None:
+        """Write what is due."""
+        self._written = []
+        for key, fields in self._due(link, here):
+            self.put(key, fields, here.now_ns)
+
+    def put(self, key: str, fields: Fields, now_ns: int) -> None:
+        """Write one message, if its topic is not off."""
+        writer = self._writer(key)
+        if writer is not None:
+            made = message(writer.kind, fields)
+            writer.write(made)
+            self._written.append((writer, made))
+            if self.bag is not None:
+                self.bag.write(writer.name, writer.kind, made, now_ns)
+
+    def write_again(self) -> None:
+        """Write once more what the last instant wrote."""
+        for writer, made in self._written:
+            writer.write(made)
+
+    @property
+    def written(self) -> dict[str, str]:
+        """Types of the topics that are written, by name."""
+        return {each.name: each.kind for each in self._writers.values() if each is not None}
+
+    @property
+    def latched(self) -> frozenset[str]:
+        """Names of the topics that are kept for late readers."""
+        return frozenset(each.name for key in LATCHED if (each := self._writers.get(key)))
+
+    def matches(self) -> int:
+        """Return the number of readers of all topics."""
+        made = (each for each in self._writers.values() if each is not None)
+        return sum(len(each.dds.get_matched_subscriptions()) for each in made)
+
+    def _due(self, link: Ros2Ports, here: Here) -> Iterator[tuple[str, Fields]]:
+        now = here.now_ns
+        if "tf_static" not in self._writers:
+            yield "tf_static", places(link, here)
+        course = leg(link, here)
+        if course is not None and self._leg != link.leg:
+            self._leg = link.leg
+            yield "leg", course
+        for key, make in MEASURED.items():
+            fields = make(link, here)
+            if fields is not None and self._is_new(key, fields, here):
+                yield key, fields
+        if now - self._truth_ns >= round(link.truth_period * NS):
+            self._truth_ns = now
+            yield "tf", transforms(link, here)
+            yield "odometry", odometry(link, here)
+        yield "clock", {"clock": now}
+
+    def _is_new(self, key: str, fields: Fields, here: Here) -> bool:
+        measured = {name: value for name, value in fields.items() if name != "header"}
+        last, at = self._last.get(key, ({}, 0))
+        overdue = here.now_ns - at >= _OVERDUE * here.instruments.period_ns(key)
+        if repr(measured) == repr(last) and not overdue:
+            return False
+        self._last[key] = measured, here.now_ns
+        return True
+
+    def _writer(self, key: str) -> Writer | None:
+        if key not in self._writers:
+            topic = PUBLISHED[key]
+            name = self._names.of(key, topic)
+            durability: Durability = "latched" if key in LATCHED else "volatile"
+            self._writers[key] = (
+                None if name is None else self._participant.writer(name, topic.kind, durability)
+            )
+        return self._writers[key]

@@ -1,0 +1,83 @@
+"""Commands to the vehicle's pilot: velocity, wrench and goal, as orders of guidance."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+from .frames import enu, flu
+from .published import MAP, ODOM
+
+_LEAD = math.radians(60.0)
+"""The farthest that the heading wanted runs ahead of the vehicle's."""
+_FARTHEST = 1e6
+"""Goals beyond are no place to go to, m."""
+
+
+@dataclass(frozen=True)
+class Orders:
+    """What guidance is told; see its inputs. {n}, SI, rad."""
+
+    mode: str = "hold"
+    manual: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 0.0)
+    target_kind: str = "position"
+    target_valid: bool = False
+    target_position: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    target_heading: float = 0.0
+    target_speed: float = 0.0
+
+
+class VelocityOrders:
+    """A Twist as a heading that turns, a speed along the bow, and a depth that changes.
+
+    psi' = -angular.z, z' = -linear.z, from those of the vehicle when the command began; the
+    heading wanted is at most 60 degrees ahead of the vehicle's.
+    """
+
+    def __init__(self) -> None:
+        self._heading: float | None = None
+        self._depth = 0.0
+
+    def stop(self) -> None:
+        """Begin anew with the next command."""
+        self._heading = None
+
+    def orders(self, twist: Any, measured: float, depth: float, period: float) -> Orders:
+        """Return the orders of one instant; ``measured`` is the heading, rad."""
+        if self._heading is None:
+            self._heading, self._depth = measured, depth
+        ahead = math.remainder(self._heading - measured, math.tau) - twist.angular.z * period
+        self._heading = measured + min(max(ahead, -_LEAD), _LEAD)
+        self._depth -= twist.linear.z * period
+        return Orders(
+            "guided",
+            target_kind="heading",
+            target_valid=True,
+            target_position=(0.0, 0.0, self._depth),
+            target_heading=math.remainder(self._heading, math.tau),
+            target_speed=float(twist.linear.x),
+        )
+
+
+def wrench_orders(wrench: Any, full: tuple[float, ...]) -> Orders:
+    """Return a Wrench in base_link as shares of manual control; ``full`` is X, Y, Z, N."""
+    force, moment = wrench.force, wrench.torque
+    x, y, z = flu((force.x, force.y, force.z))
+    asked = x, y, z, flu((moment.x, moment.y, moment.z))[2]
+    surge, sway, heave, yaw = (
+        min(max(a / f, -1.0), 1.0) if f else 0.0 for a, f in zip(asked, full, strict=True)
+    )
+    return Orders("manual", (surge, sway, yaw, heave))
+
+
+def goal_orders(goal: Any, prefix: str) -> Orders | str:
+    """Return a PoseStamped as a position to go to and stay at, or why it is none."""
+    frame = goal.header.frame_id.removeprefix(prefix)
+    if frame not in ("", MAP, ODOM):
+        return f"goals in the frame {goal.header.frame_id!r} are refused: {MAP} is needed"
+    place = goal.pose.position
+    position = enu((place.x, place.y, place.z))
+    if not all(abs(x) <= _FARTHEST for x in position):
+        return "goals farther than 1000 km are refused"
+    return Orders("guided", target_valid=True, target_position=position)

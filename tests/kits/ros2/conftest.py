@@ -1,0 +1,38 @@
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from .peer import LOOPBACK
+
+_DOMAINS = iter(range(100))
+
+
+@pytest.fixture(scope="module")
+def domain(worker_id):
+    """A domain of this module alone: tests of others run at the same time."""
+    worker = int(worker_id.removeprefix("gw")) if worker_id.startswith("gw") else 0
+    return 1 + (worker * 12 + next(_DOMAINS)) % 100
+
+
+@pytest.fixture
+def peer(domain):
+    """A function that starts a helmsman in a process of its own; it ends with the test."""
+    started = []
+
+    def start(what):
+        command = [sys.executable, str(Path(__file__).with_name("peer.py")), str(domain), what]
+        environment = {**os.environ, "CYCLONEDDS_URI": LOOPBACK}
+        started.append(subprocess.Popen(command, stdin=subprocess.PIPE, env=environment))
+        return started[-1]
+
+    yield start
+    for process in started:
+        process.stdin.close()
+        try:
+            process.wait(5.0)
+        except subprocess.TimeoutExpired:
+            process.kill()
+            process.wait()

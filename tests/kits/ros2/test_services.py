@@ -1,0 +1,212 @@
+"""Services called by a program that knows DDS and the bytes of rmw_cyclonedds alone."""
+
+import threading
+import time
+from dataclasses import dataclass
+
+import pytest
+from cyclonedds.idl import IdlStruct, make_idl_struct
+from cyclonedds.idl.types import float64, int64, sequence, uint8, uint16, uint64
+
+from seatrial import Simulation
+
+from .peer import LOOPBACK, Header, Node, Pose, Twist, Vector3
+
+PACKAGE = "simulation_interfaces"
+
+
+@dataclass
+class Result(IdlStruct, typename=f"{PACKAGE}::msg::dds_::Result_"):
+    result: uint8
+    error_message: str
+
+
+@dataclass
+class State(IdlStruct, typename=f"{PACKAGE}::msg::dds_::SimulationState_"):
+    state: uint8
+
+
+@dataclass
+class Features(IdlStruct, typename=f"{PACKAGE}::msg::dds_::SimulatorFeatures_"):
+    features: sequence[uint16]
+    spawn_formats: sequence[str]
+    custom_info: str
+
+
+@dataclass
+class Accel(IdlStruct, typename="geometry_msgs::msg::dds_::Accel_"):
+    linear: Vector3
+    angular: Vector3
+
+
+@dataclass
+class EntityState(IdlStruct, typename=f"{PACKAGE}::msg::dds_::EntityState_"):
+    header: Header
+    pose: Pose
+    twist: Twist
+    acceleration: Accel
+
+
+@dataclass
+class ParameterValue(IdlStruct, typename="rcl_interfaces::msg::dds_::ParameterValue_"):
+    type: uint8 = 0
+    bool_value: bool = False
+    integer_value: int64 = 0
+    double_value: float64 = 0.0
+    string_value: str = ""
+    byte_array_value: sequence[uint8] = ()
+    bool_array_value: sequence[bool] = ()
+    integer_array_value: sequence[int64] = ()
+    double_array_value: sequence[float64] = ()
+    string_array_value: sequence[str] = ()
+
+
+@dataclass
+class Parameter(IdlStruct, typename="rcl_interfaces::msg::dds_::Parameter_"):
+    name: str
+    value: ParameterValue
+
+
+@dataclass
+class Outcome(IdlStruct, typename="rcl_interfaces::msg::dds_::SetParametersResult_"):
+    successful: bool
+    reason: str
+
+
+def _service(kind, request, response):
+    """Classes of a service's two messages, with the header of rmw_cyclonedds."""
+    package, name = kind
+    header = {"client_guid": uint64, "sequence_number": int64}
+    return [
+        make_idl_struct(suffix, f"{package}::srv::dds_::{name}_{suffix}_", {**header, **fields})
+        for suffix, fields in (("Request", request), ("Response", response))
+    ]
+
+
+NONE = {"structure_needs_at_least_one_member": uint8}
+"""Fields of a request that has none."""
+
+SERVICES = {
+    "get_simulator_features": ((PACKAGE, "GetSimulatorFeatures"), NONE, {"features": Features}),
+    "get_simulation_state": (
+        (PACKAGE, "GetSimulationState"), NONE, {"state": State, "result": Result}),
+    "set_simulation_state": (
+        (PACKAGE, "SetSimulationState"), {"state": State}, {"result": Result}),
+    "step_simulation": ((PACKAGE, "StepSimulation"), {"steps": uint64}, {"result": Result}),
+    "reset_simulation": ((PACKAGE, "ResetSimulation"), {"scope": uint8}, {"result": Result}),
+    "get_entity_state": (
+        (PACKAGE, "GetEntityState"), {"entity": str}, {"result": Result, "state": EntityState}),
+    "inject_fault": (
+        ("rcl_interfaces", "SetParameters"),
+        {"parameters": sequence[Parameter]}, {"results": sequence[Outcome]}),
+}  # fmt: skip
+
+
+class Client:
+    """Calls services of a simulation that steps meanwhile, in real time or faster."""
+
+    def __init__(self, domain):
+        self.node, self.made, self.count = Node(domain), {}, 0
+
+    def call(self, name, *values, within=10.0):
+        if name not in self.made:
+            asked, answered = _service(*SERVICES[name])
+            base = f"/otter/{name}" if name == "inject_fault" else f"/seatrial/{name}"
+            writer = self.node.writer(f"{base}Request", asked, prefix="rq")
+            reader = self.node.reader(f"{base}Reply", answered, prefix="rr")
+            self.made[name] = asked, writer, reader
+        asked, writer, reader = self.made[name]
+        until = time.monotonic() + within
+        while not (writer.get_matched_subscriptions() and reader.get_matched_publications()):
+            assert time.monotonic() < until, f"no service {name}"
+            time.sleep(0.01)
+        self.count += 1
+        writer.write(asked(0xABCDEF, self.count, *values))
+        while time.monotonic() < until:
+            for each in reader.take(10):
+                if each.sample_info.valid_data and each.sequence_number == self.count:
+                    assert each.client_guid == 0xABCDEF
+                    return each
+            time.sleep(0.005)
+        raise AssertionError(f"no answer of {name}")
+
+
+@pytest.fixture
+def running(domain, monkeypatch):
+    """A simulation of the Otter that steps in a thread, and a client beside it."""
+    monkeypatch.setenv("CYCLONEDDS_URI", LOOPBACK)
+    simulation = Simulation(
+        "sil",
+        choices={"vehicle": "otter", "autopilot": "ros2"},
+        set={"autopilot.ros2.domain": domain},
+    )
+    stop = threading.Event()
+
+    def run():
+        while not stop.is_set():
+            simulation.step(1)
+            time.sleep(0.001)
+
+    thread = threading.Thread(target=run)
+    thread.start()
+    client = Client(domain)
+    yield simulation, client
+    stop.set()
+    thread.join(0.2)
+    if thread.is_alive():  # it is paused
+        client.call("set_simulation_state", State(1))
+        thread.join()
+    client.node.participant.__del__()
+    simulation.close()
+
+
+def test_the_standard_s_calls(running):
+    simulation, client = running
+    assert client.call("get_simulator_features", 0).features.features == [10, 24, 25, 26, 31, 32]
+    answer = client.call("get_simulation_state", 0)
+    assert (answer.state.state, answer.result.result) == (1, 1)
+    refused = client.call("step_simulation", 3)
+    assert refused.result.result == 3
+    assert client.call("set_simulation_state", State(1)).result.result == 101
+    assert client.call("set_simulation_state", State(2)).result.result == 1
+    assert client.call("get_simulation_state", 0).state.state == 2
+    time.sleep(0.05)
+    before = client.call("get_entity_state", "otter").state.header.stamp
+    time.sleep(0.1)
+    assert client.call("step_simulation", 5).result.result == 1
+    after = client.call("get_entity_state", "otter").state.header.stamp
+    assert (after.sec - before.sec) * 10**9 + after.nanosec - before.nanosec == 5 * 10**7
+    assert client.call("set_simulation_state", State(0)).result.result == 0
+    reset = client.call("reset_simulation", 0)
+    assert reset.result.result == 0
+    assert "seatrial run" in reset.result.error_message
+    lost = client.call("get_entity_state", "oter")
+    assert lost.result.result == 2
+    assert "'otter'" in lost.result.error_message
+    assert client.call("step_simulation", 0).result.result == 4
+    assert client.call("set_simulation_state", State(1)).result.result == 1
+    time.sleep(0.05)
+    assert simulation.get("autopilot.ros2.paused") > 0.1
+
+
+def test_a_fault_is_injected_and_what_is_none_refused(running):
+    simulation, client = running
+
+    def text(name, value):
+        return Parameter(name, ParameterValue(type=4, string_value=value))
+
+    asked = [
+        text("gps", "off"),
+        text("gsp", "off"),
+        text("mag", "of"),
+        Parameter("gyro", ParameterValue(type=2, integer_value=1)),
+    ]
+    found = client.call("inject_fault", asked).results
+    assert [each.successful for each in found] == [True, False, False, False]
+    assert "gps" in found[1].reason
+    assert "off" in found[2].reason
+    until = time.monotonic() + 10.0
+    while simulation.get("autopilot.ros2.failure.gps") != "off" and time.monotonic() < until:
+        time.sleep(0.05)
+    assert simulation.get("autopilot.ros2.failure.gps") == "off"
+    assert simulation.get("vehicle.gnss.fault") == "off"
