@@ -8,8 +8,12 @@ import numpy as np
 import pytest
 
 from seatrial.errors import InputError
+from seatrial.physics.craft.manoeuvring_ship import ManoeuvringShip
 from seatrial.physics.craft.marine_craft import MarineCraft
 from seatrial.physics.craft.rov import Rov
+from seatrial.physics.craft.surface_vessel import SurfaceVessel
+from seatrial.physics.craft.thruster_ship import ThrusterShip
+from seatrial.physics.parts.mmg_ship import MmgShip
 from tests.sea.references import content, table
 
 from .fleet import FLEET, craft, states
@@ -185,6 +189,23 @@ def test_error_between_evaluations_is_that_of_a_cubic(h):
     assert (off[[2, 4]] < (1.1 * bound + 1e-5) * largest[[2, 4]]).all()
     if apart > h:
         assert (off[[2, 4]] > 0.5 * bound * largest[[2, 4]]).all()
+
+
+@pytest.mark.parametrize("kind", [ManoeuvringShip, MmgShip, ThrusterShip, SurfaceVessel])
+def test_a_long_following_sea_pushes_a_hull_as_the_water_that_it_displaces(kind):
+    hull, heading, omega = kind("boat"), 2.2, 0.3
+    values = {"sea_period": math.tau / omega, "sea_direction": heading, "hull_length": 2.0}
+    values |= {"section_beam": 0.5, "section_draught": 0.2, "section_area": 0.08, **REGULAR}
+    for name, value in values.items():
+        hull.set(name, value)
+    _, density = hull.wave_coefficients()
+    assert 990 < density < 1030
+    state = np.zeros(12)
+    state[hull.places.psi] = heading
+    met = hull.met()
+    for t in (3.0, 9.0):
+        surging = -(omega**2) * 1e-3 * math.sin(omega * t)
+        assert met(t, state)[9] == pytest.approx(density * 0.16 * surging, rel=0.01)
 
 
 def test_a_saved_state_goes_on_in_the_same_sea():
