@@ -138,6 +138,13 @@ def test_beside_the_deck_nothing_carries_it():
     assert falling.get("position")[2] > 1.0
 
 
+def test_a_foot_far_below_the_deck_is_not_on_it():
+    depths = {0.0495: 4 * [0.0495 * STIFFNESS], 0.0505: 4 * [0.0]}
+    for depth, forces in depths.items():
+        below = drone(position_start=[0.0, 0.0, -PAD - LEG + depth], stopped_start=50.0)
+        assert below.get("contact_force") == pytest.approx(forces)
+
+
 def test_thrust_stays_off_when_it_bounces():
     landing = drone(position_start=[0.0, 0.0, -1.0], descent=1.0, damping=0.0)
     lost = []
