@@ -148,7 +148,10 @@ def test_corners_press_and_rub_where_they_touch(seed):
     law = {"stiffness": 3e3, "damping": 0.4, "friction": 0.5, "slip_speed": 0.02}
     contact = started(
         Contact,
-        **{"position": [2.0, -3.0, 7.0], "attitude": attitude, "velocity": v, "rates": rates},
+        position=[2.0, -3.0, 7.0],
+        attitude=attitude,
+        velocity=v,
+        rates=rates,
         **{"box_size": size, "box_center": center, "radius": radius, "seabed_depth": depth, **law},
     )
     force, moment = np.zeros((2, 3))
