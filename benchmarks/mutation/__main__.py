@@ -2,7 +2,7 @@
 
 ``make mutate COUNT=600 SEED=1`` draws lines of the folders `SCOPE` evenly, changes each in one
 way (`operators`), and runs the test files of `TESTS` that execute it, the fastest first, up to the
-first failure. Which those are is recorded once, by coverage. What is killed stays killed when the
+first failure. These files are found by coverage, recorded once. Killed mutants stay so when the
 command runs again; survivors run again when a test file has changed. All is kept below
 ``build/mutation``.
 
@@ -101,17 +101,23 @@ def covered(seed: int) -> dict[str, dict]:
     """Return what `executed` does by test file, of those that pass; keep what was recorded."""
     path, found = BUILD / "coverage.jsonl", {}
     known = remembered(path)
-    scope = digest(*(each.read_bytes() for each in modules()))
+    now = {each.relative_to(COPY).as_posix(): digest(each.read_bytes()) for each in modules()}
     files = sorted(each for folder in TESTS for each in (COPY / folder).rglob("test_*.py"))
     for number, file in enumerate(files, 1):
         name = file.relative_to(COPY).as_posix()
-        key = f"{name} {digest(file.read_bytes())} {scope}"
-        if key not in known:
-            known[key] = remember(path, {"key": key, **executed(name, seed)})
-            said = f"{known[key]['seconds']:.0f} s, status {known[key]['status']}"
+        key = f"{name} {digest(file.read_bytes())}"
+        record = known.get(key)
+        if record is None or any(now.get(each) != was for each, was in record["sources"].items()):
+            record = executed(name, seed)
+            record |= {"key": key, "sources": {each: now[each] for each in record["lines"]}}
+            remember(path, record)
+            said = f"{record['seconds']:.0f} s, status {record['status']}"
             print(f"{number}/{len(files)} {name}: {said}", flush=True)
-        found[name] = known[key]
-    return {name: each for name, each in found.items() if each["status"] == 0}
+        found[name] = record
+    left = [name for name, each in found.items() if each["status"]]
+    if left:
+        print("left out, as they fail without a mutant or take too long:", *left)
+    return {name: each for name, each in found.items() if name not in left}
 
 
 def statement(source: bytes, line: int) -> set[int]:

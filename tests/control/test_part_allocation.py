@@ -244,7 +244,10 @@ def test_one_that_stands_at_an_angle_pushes_along_it():
     [
         ({"propulsor_axis_2": [0, 2, 0]}, "propulsor_axis_2 is .* of length 2: give a unit vector"),
         ({"propulsor_angle_limit_1": [1, -1]}, "propulsor_angle_limit_1 is 1.0 to -1.0 rad"),
-        ({"propulsor_axis_1": [0, 0, 1]}, "propulsor_axis_1 .* turns about z has a horizontal one"),
+        (
+            {"propulsor_axis_1": [0, 0, -1]},
+            "propulsor_axis_1 .* turns about z has a horizontal one",
+        ),
         ({"propulsors": "azimuth azimuth tunnel tunnel propeller"}, "thrust_5 is not given"),
         ({"axes": ""}, "axes names none: give some of surge, sway"),
         ({"axes": "surge heave"}, "give heave not at all: they give surge, sway, yaw"),

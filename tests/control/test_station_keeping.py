@@ -212,15 +212,20 @@ def test_integral_does_not_wind_up_against_a_limit():
     assert keeper.get("surge_force") < 0.0
 
 
-def test_integral_turns_with_the_craft():
-    keeper = pilot(position_n=[-0.5, 0, 0])
-    for k in range(100):
-        keeper.advance(0.05 * k, 0.05)
-    keeper.set("position_n", [0, 0, 0])
-    learnt = keeper.get("surge_force")
-    assert learnt > 1.0
-    keeper.set("heading", math.pi)
-    assert keeper.get("surge_force") == pytest.approx(-learnt)
+def test_integral_keeps_its_direction_when_the_craft_turns():
+    h, period, steps = 2.0, 0.1, 20
+    bow = complex(math.cos(h), math.sin(h))
+    gains = {"surge_gain": 5.0, "surge_integral": 3.0, "surge_damping": 25.0, "surge_limit": 1e3}
+    keeper = pilot(**gains, heading=h, station=[0.4 * bow.real, 0.4 * bow.imag], period=period)
+    for k in range(steps):
+        keeper.advance(k * period, period)
+    learnt = 3.0 * 0.4 * period * steps * bow
+    turned, velocity = 0.3, complex(0.2, -0.1)
+    values = {"heading": turned, "station": [0, 0], "velocity_n": [velocity.real, velocity.imag, 0]}
+    for name, value in values.items():
+        keeper.set(name, value)
+    along = ((learnt - 25.0 * velocity) * np.exp(-1j * turned)).real
+    assert keeper.get("surge_force") == pytest.approx(along)
 
 
 @pytest.mark.parametrize(

@@ -3,9 +3,16 @@
 import math
 from itertools import pairwise
 
+import casadi as ca
+import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
+from seatrial.physics.contact import friction as coulomb
+from seatrial.physics.contact import hunt_crossley
 from seatrial.physics.craft.legged_drone import LeggedDrone
+
+from .numerically import numbers
 
 G, MASS, LEG, STIFFNESS = 9.81, 10.0, 0.25, 6131.0
 WEIGHT = MASS * G
@@ -131,9 +138,82 @@ def test_beside_the_deck_nothing_carries_it():
     assert falling.get("position")[2] > 1.0
 
 
+def test_a_foot_far_below_the_deck_is_not_on_it():
+    depths = {0.0495: 4 * [0.0495 * STIFFNESS], 0.0505: 4 * [0.0]}
+    for depth, forces in depths.items():
+        below = drone(position_start=[0.0, 0.0, -PAD - LEG + depth], stopped_start=50.0)
+        assert below.get("contact_force") == pytest.approx(forces)
+
+
 def test_thrust_stays_off_when_it_bounces():
     landing = drone(position_start=[0.0, 0.0, -1.0], descent=1.0, damping=0.0)
     lost = []
     run(landing, 4.0, lambda t: lost.append(landing.get("stopped")))
     assert all(b >= a for a, b in pairwise(lost))
     assert lost[-1] > 5.0
+
+
+def tumbling(seed, turned=0.0, stopped=0.0):
+    """Return forces and rates of change of a drone on a deck that moves, the world turned by z."""
+    draw, z = np.random.default_rng(seed), Rotation.from_euler("z", turned)
+    yaw = np.array([0.0, 0.0, turned])
+    own, deck = draw.uniform(-0.12, 0.12, (2, 3)) + [0, 0, 1] * draw.uniform(-3, 3, (2, 1))
+    R, D = (Rotation.from_euler("ZYX", euler[::-1]) for euler in (own, deck))
+    above = [*draw.uniform(-0.2, 0.2, 2), -PAD - LEG + draw.uniform(0.0, 0.02)]
+    origin, v, rates, V, spin = draw.normal(size=(5, 3))
+    x = {
+        "position": z.apply(origin + D.apply(above)),
+        "velocity": z.apply(v),
+        "attitude": own + yaw,
+        "rates": rates,
+        "clock": 2.0,
+        "stopped": stopped,
+    }
+    u = {
+        "deck_position": z.apply(origin),
+        "deck_velocity": V,
+        "deck_attitude": deck + yaw,
+        "deck_rates": spin,
+    }
+    p = numbers(LeggedDrone, pad=[0.1, -0.05, -PAD], deck_size=[4.0, 4.0], inertia=[0.2, 0.3, 0.4])
+    state = type(p)(**{name: ca.DM(value) for name, value in x.items()})
+    inputs = type(p)(**{name: ca.DM(value) for name, value in u.items()})
+    rates_of_change, outputs = LeggedDrone.equations(None, state, inputs, p)
+    as_arrays = [
+        {name: np.array(ca.DM(each)).ravel() for name, each in group.items()}
+        for group in (rates_of_change, outputs)
+    ]
+    return (*as_arrays, (R, D, np.array(above), v, rates, V, spin))
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_legs_on_a_deck_that_turns_and_moves(seed):
+    # Motors off: forces of the feet by their velocities over the deck, in {n}.
+    changes, found, (R, D, above, v, rates, V, spin) = tumbling(seed, stopped=60.0)
+    force, torque, on_deck = np.zeros((3, 3))
+    for a, b in ((1, -1), (1, 1), (-1, -1), (-1, 1)):
+        arm = R.apply([0.2 * a, 0.2 * b, LEG])
+        foot = D.inv().apply(D.apply(above) + arm)
+        over = v + np.cross(R.apply(rates), arm) - D.apply(V + np.cross(spin, foot))
+        slip = D.inv().apply(over)
+        depth = foot[2] + PAD
+        normal = hunt_crossley(depth, slip[2], STIFFNESS, 1.0) * (depth < 0.05)
+        own = D.apply([*coulomb(normal, slip[:2], 0.6, 0.005), -normal])
+        force, torque = force + own, torque + np.cross(arm, own)
+        on_deck = on_deck + np.cross(D.apply(foot), own)
+    inertia = np.array([0.2, 0.3, 0.4])
+    close = {"rtol": 1e-9, "atol": 1e-9}
+    np.testing.assert_allclose(changes["velocity"], force / MASS + [0, 0, G], **close)
+    spun = inertia * changes["rates"] + np.cross(rates, inertia * rates)
+    np.testing.assert_allclose(R.apply(spun), torque, **close)
+    np.testing.assert_allclose(found["force"], -D.inv().apply(force), **close)
+    np.testing.assert_allclose(found["moment"], -D.inv().apply(on_deck), **close)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_its_controller_prefers_no_heading_but_its_own(seed):
+    here, there = (tumbling(seed, turned) for turned in (0.0, 1.3))
+    for name in ("force", "moment", "thrust", "place", "slip"):
+        np.testing.assert_allclose(there[1][name], here[1][name], rtol=1e-9, atol=1e-9)
+    # About z it holds north.
+    np.testing.assert_allclose(there[0]["rates"][:2], here[0]["rates"][:2], rtol=1e-9)

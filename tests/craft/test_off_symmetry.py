@@ -2,6 +2,7 @@
 
 import itertools
 import math
+from types import SimpleNamespace
 
 import casadi as ca
 import numpy as np
@@ -13,7 +14,9 @@ from seatrial.physics.craft.marine_craft import MarineCraft
 from seatrial.physics.craft.propellers import propellers
 from seatrial.physics.craft.rov import Rov
 from seatrial.physics.craft.six_dof import six_dof_motion
+from seatrial.physics.craft.through_water import flow_outputs
 from seatrial.physics.craft.wave_hull import WaveHull
+from seatrial.physics.parts.flow import through_water
 from seatrial.physics.sea.strips import Strips
 from tests.sea.references import content, table
 
@@ -134,6 +137,23 @@ def test_a_sphere_meets_the_shear_by_its_velocity_over_depth(seed):
     met = surging + np.append(shear * (R @ nu[:3])[2], 0)
     expected = (m * surging + A * met) / (m + A)
     np.testing.assert_allclose(R @ acceleration, expected, rtol=1e-9, atol=1e-9)
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_parts_meet_the_water_at_their_own_depth(seed):
+    draw = np.random.default_rng(seed)
+    attitude, R, nu = pose(draw)
+    place, rises, shear = draw.normal(size=3), draw.normal(size=3), draw.normal(size=2)
+    both = numbers(Rov, water_shear=shear, flow_place=place)
+    velocity = ca.DM(nu)
+    context = Context(ca.DM(3, 1), attitude, ca.DM(R), velocity, velocity, None, both, both)
+    water = np.add(rises, [*(shear * (R @ place)[2]), 0.0])
+    expected = nu[:3] + np.cross(nu[3:], place) - R.T @ water
+    slot = SimpleNamespace(position=ca.DM(np.add(place, [0.4, 0, 0])), waves=ca.DM(rises))
+    met = through_water(context, slot, 0.4)
+    flow = flow_outputs(ca.DM(R), velocity, both, both)["flow"]
+    np.testing.assert_allclose(np.array(met).ravel(), expected, rtol=1e-9)
+    np.testing.assert_allclose(np.array(flow).ravel(), expected + R.T @ rises, rtol=1e-9)
 
 
 def smooth(x):

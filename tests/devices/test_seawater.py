@@ -81,7 +81,7 @@ def test_a_leak_is_reported_at_the_next_sample():
     leak = ideal(Leak, volume=4e-6)
     assert leak.get("leaking") == 0.0
     leak.set("volume", 6e-6)
-    assert leak.get("leaking") == 1.0
+    assert leak.get("wetness") == leak.get("leaking") == 1.0
     leak.advance(0.0, 0.1)
     leak.set("volume", 0.0)
     assert leak.get("leaking") == 1.0

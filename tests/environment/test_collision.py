@@ -72,6 +72,34 @@ def test_momentum_is_conserved_and_energy_lost(offset):
     assert rows[:, 3].max() <= rows[0, 3] * (1 + 1e-9)
 
 
+@pytest.mark.parametrize("seed", range(3))
+def test_neither_of_the_two_is_the_first(seed):
+    draw, found = np.random.default_rng(seed), {}
+    poses = {
+        "position": [[0.0, 0.0, 0.0], [0.4, 0.5, 0.2]],
+        "attitude": draw.uniform(-0.4, 0.4, (2, 3)),
+        "velocity": draw.normal(size=(2, 3)),
+        "rates": draw.normal(size=(2, 3)),
+        "length": [1.4, 0.9],
+        "radius": [0.4, 0.3],
+        "center": draw.uniform(-0.1, 0.1, (2, 3)),
+    }
+    for order in (("first", "second"), ("second", "first")):
+        collision = Collision("collision")
+        for name, values in poses.items():
+            for craft, value in zip(order, values, strict=True):
+                collision.set(f"{craft}_{name}", value)
+        collision.initialise()
+        collision.begin()
+        loads = [
+            collision.get(f"{craft}_{load}") for craft in order for load in ("force", "moment")
+        ]
+        found[order] = np.ravel(loads)
+    one, other = found.values()
+    assert np.abs(one).max() > 1.0
+    np.testing.assert_allclose(one, other, rtol=1e-9, atol=1e-9)
+
+
 def test_a_central_impact_separates_them_by_the_restitution_of_the_law():
     _, bodies, _ = run(0.0, h=5e-4, second_length=0.5, damping=0.4)
     # the second is a sphere: its heading does not matter

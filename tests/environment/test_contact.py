@@ -1,12 +1,17 @@
 """A body of mass m with the component contact, against closed forms of the laws."""
 
+import itertools
 import math
 from itertools import pairwise
 
+import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
-from seatrial.physics.contact import restitution
+from seatrial.physics.contact import friction as coulomb
+from seatrial.physics.contact import hunt_crossley, restitution
 from seatrial.physics.environment.contact import Contact
+from tests.devices.running import started
 
 G = 9.81
 DEPTH, HALF_HEIGHT = 10.0, 0.25  # m
@@ -127,3 +132,35 @@ def test_a_corner_pushes_along_the_normal_of_a_wall_and_turns_the_body():
     assert fz == pytest.approx(0.0, abs=1e-12)
     x, y = 1.0, -0.5
     assert contact.get("moment")[2] == pytest.approx(x * fy - y * fx)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_corners_press_and_rub_where_they_touch(seed):
+    # A box that tumbles into a level bottom: of each corner, in {n}, by its lowest point.
+    draw = np.random.default_rng(seed)
+    attitude, center = draw.uniform(-0.5, 0.5, 3), draw.uniform(-0.1, 0.1, 3)
+    size, radius, v, rates = draw.uniform(0.5, 1.0, 3), 0.08, *draw.normal(size=(2, 3))
+    R = Rotation.from_euler("ZYX", attitude[::-1])
+    corners = [center + 0.5 * size * s for s in itertools.product((-1, 1), repeat=3)]
+    down = np.array([0.0, 0.0, 1.0])
+    lowest = sorted(R.apply(arm)[2] + radius for arm in corners)
+    depth = 7.0 + 0.5 * (lowest[-2] + lowest[-3])  # two corners are in the bottom
+    law = {"stiffness": 3e3, "damping": 0.4, "friction": 0.5, "slip_speed": 0.02}
+    contact = started(
+        Contact,
+        position=[2.0, -3.0, 7.0],
+        attitude=attitude,
+        velocity=v,
+        rates=rates,
+        **{"box_size": size, "box_center": center, "radius": radius, "seabed_depth": depth, **law},
+    )
+    force, moment = np.zeros((2, 3))
+    for arm in corners:
+        foot = R.apply(arm) + radius * down
+        moves = R.apply(v) + np.cross(R.apply(rates), foot)
+        press = hunt_crossley(7.0 + foot[2] - depth, moves[2], 3e3, 0.4)
+        own = np.array([*coulomb(press, moves[:2], 0.5, 0.02), -press])
+        force, moment = force + own, moment + np.cross(foot, own)
+    assert np.abs(force).max() > 1.0
+    np.testing.assert_allclose(contact.get("force"), R.inv().apply(force), rtol=1e-9, atol=1e-9)
+    np.testing.assert_allclose(contact.get("moment"), R.inv().apply(moment), rtol=1e-9, atol=1e-9)

@@ -35,6 +35,17 @@ def test_a_push_swings_it_as_an_oscillator(seconds):
     assert swung(5.0, seconds) == pytest.approx(expected, abs=2e-4)  # of steps of 1 ms
 
 
+def test_it_pulls_back_and_resists_on_both_axes():
+    line = started(
+        Mooring, stiffness=STIFFNESS, damping=DAMPING, armed=False, point=[7.0, -3.0, 0.4]
+    )
+    line.advance(0.0, STEP)
+    line.set("point", [7.3, -3.8, 0.9])
+    line.set("velocity", [0.2, 0.5, 1.0])
+    expected = [-STIFFNESS * 0.3 - DAMPING * 0.2, STIFFNESS * 0.8 - DAMPING * 0.5, 0.0]
+    assert line.get("force") == pytest.approx(expected)
+
+
 def test_it_is_cast_off_for_good_when_the_autopilot_is_armed():
     line = started(Mooring, stiffness=STIFFNESS, armed=False, point=[1.0, 2.0, 0.0])
     line.advance(0.0, 0.1)
