@@ -48,7 +48,7 @@ def course(
             return None
         unit = unit_of(comparison, units, comparison.left.exponents(units))
         measured, bound = (
-            np.broadcast_to(np.asarray(side.evaluate(record.numbers), dtype=float), time.shape)
+            np.broadcast_to(np.asarray(side.evaluate(record.values), dtype=float), time.shape)
             for side in (comparison.measured, comparison.bound)
         )
         beyond = comparison.margins(record)[1][: row + 1] < 0

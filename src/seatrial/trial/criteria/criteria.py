@@ -20,8 +20,8 @@ records: `robustness`. Short for a condition X at times of the run:
 What binds most comes first: ``not`` and the operators with one operand; ``until`` and ``since``;
 ``and``; ``or``; ``implies``.
 
-Expressions have ``+ - * /``, ``abs``, ``max``, ``min``, ``sqrt``, signals and numbers with a unit
-written without spaces (``0.5 m/s``, ``5 %``).
+Expressions have ``+ - * /``, functions of a point (`expressions`) and of the record (`metrics`),
+signals and numbers with a unit written without spaces (``0.5 m/s``, ``5 %``).
 
 The band of ``settles`` is a share of the greatest distance that the signal has from its final
 value anywhere in the record, whichever row the time is measured from: so the band is the same for

@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
+from itertools import pairwise
 from typing import Any, NamedTuple, Protocol, cast
 
 import numpy as np
@@ -73,6 +74,11 @@ class Operation:
     name: str
     arguments: tuple[Expression, ...]
 
+    @property
+    def when(self) -> str:
+        """Which part of the record it is about, as it is written; nothing of a single point."""
+        return ""
+
     def leaves(self) -> Iterator[Literal | Signal]:
         """Yield all literals and signals, from left to right."""
         for argument in self.arguments:
@@ -122,7 +128,7 @@ def written(node: Expression) -> str:
             part[1:-1] if isinstance(argument, Operation) and argument.name in "+-*/" else part
             for part, argument in zip(parts, node.arguments, strict=True)
         ]
-        return f"{node.name}({', '.join(bare)})"
+        return f"{node.name}({', '.join(bare)}{node.when})"
     if node.name == "negative":
         return f"-{parts[0]}"
     return f"({f' {node.name} '.join(parts)})"
@@ -165,11 +171,11 @@ def same_kind(node: Operation, exponents: list[Exponents], units: Units) -> Expo
 
 
 def _product(node: Operation, exponents: list[Exponents], units: Units) -> Exponents:
-    return _combined(exponents[0], exponents[1], 1)
+    return combined(exponents[0], exponents[1], 1)
 
 
 def _quotient(node: Operation, exponents: list[Exponents], units: Units) -> Exponents:
-    return _combined(exponents[0], exponents[1], -1)
+    return combined(exponents[0], exponents[1], -1)
 
 
 def _root(node: Operation, exponents: list[Exponents], units: Units) -> Exponents:
@@ -178,7 +184,8 @@ def _root(node: Operation, exponents: list[Exponents], units: Units) -> Exponent
     return {base: power // 2 for base, power in exponents[0].items()}
 
 
-def _combined(a: Exponents, b: Exponents, sign: int) -> Exponents:
+def combined(a: Exponents, b: Exponents, sign: int) -> Exponents:
+    """Return the exponents of a product, ``sign`` 1, or of a quotient, -1."""
     powers = {base: a.get(base, 0) + sign * b.get(base, 0) for base in a | b}
     return {base: power for base, power in powers.items() if power}
 
@@ -225,6 +232,50 @@ def _least(*values: Value) -> Any:
     return np.minimum.reduce(np.broadcast_arrays(*values))
 
 
+def _wrapped(angle: Value) -> Any:
+    """Return an angle in (-pi, pi]."""
+    return math.pi - np.mod(math.pi - np.asarray(angle), math.tau)
+
+
+def _of_angle(found: Exponents) -> Callable[[Operation, list[Exponents], Units], Exponents]:
+    def rule(node: Operation, exponents: list[Exponents], units: Units) -> Exponents:
+        if exponents[0] != _ANGLE:
+            argument = _described(node.arguments[0], exponents[0], units)
+            raise InputError(f"{node.name!r} needs an angle, got {argument}")
+        return found
+
+    return rule
+
+
+def _to_angle(node: Operation, exponents: list[Exponents], units: Units) -> Exponents:
+    same_kind(node, exponents, units)
+    return _ANGLE
+
+
+def _distance(north: Value, east: Value, *places: Value) -> Any:
+    """Return the distance from a path through places, north and east of each."""
+    corners = np.reshape([float(np.max(np.atleast_1d(each))) for each in places], (-1, 2))
+    at = np.stack(np.broadcast_arrays(np.asarray(north, float), east), axis=-1)
+    found = [np.hypot(*np.moveaxis(at - corner, -1, 0)) for corner in corners[:1]]
+    for begin, end in pairwise(corners):
+        along = end - begin
+        length2 = float(along @ along) or 1.0
+        share = np.clip(((at - begin) @ along) / length2, 0.0, 1.0)
+        found.append(np.hypot(*np.moveaxis(at - begin - share[..., None] * along, -1, 0)))
+    return np.minimum.reduce(found)
+
+
+def _of_path(node: Operation, exponents: list[Exponents], units: Units) -> Exponents:
+    places = node.arguments[2:]
+    if len(places) < 2 or len(places) % 2 or any(signal_names(place) for place in places):
+        raise InputError(
+            f"{node.name} needs north and east, and behind them north and east of each place of "
+            f"the path as numbers, got {len(node.arguments)} values"
+        )
+    return same_kind(node, exponents, units)
+
+
+_ANGLE: Exponents = {"rad": 1}
 _OPERATIONS = {
     "+": Rule(np.add, same_kind),
     "-": Rule(np.subtract, same_kind),
@@ -235,6 +286,12 @@ _OPERATIONS = {
     "max": Rule(_greatest, same_kind),
     "min": Rule(_least, same_kind),
     "sqrt": Rule(np.sqrt, _root, 1),
+    "sin": Rule(np.sin, _of_angle({}), 1),
+    "cos": Rule(np.cos, _of_angle({}), 1),
+    "tan": Rule(np.tan, _of_angle({}), 1),
+    "atan2": Rule(np.arctan2, _to_angle, 2),
+    "wrap": Rule(_wrapped, _of_angle(_ANGLE), 1),
+    "cross_track": Rule(_distance, _of_path),
 }
 _OPERATORS = ("+", "-", "*", "/", "negative")
 OF_KITS = Registry("seatrial.criteria", "function of criteria", {})
@@ -242,7 +299,7 @@ OF_KITS = Registry("seatrial.criteria", "function of criteria", {})
 
 
 def functions() -> list[str]:
-    """Return the names of all functions."""
+    """Return the names of all functions of single points."""
     return sorted({*_OPERATIONS, *OF_KITS.names()} - {*_OPERATORS})
 
 

@@ -108,7 +108,7 @@ def looks_ahead(node: Formula) -> bool:
 def is_timeless(node: Formula) -> bool:
     """Return whether the formula at a point depends on that point alone."""
     if isinstance(node, PREDICATES):
-        return True
+        return node.is_timeless
     return isinstance(node, Logic) and all(is_timeless(part) for part in node.parts)
 
 

@@ -17,6 +17,7 @@ from . import expressions as ex
 from . import formulas
 from .expressions import Expression
 from .formulas import WHOLE, Formula, Interval, Logic, Temporal, Until
+from .metrics import ALL, metric
 from .predicates import Comparison, Says, Truth
 from .settling import DEFAULT_BAND, Settling
 
@@ -57,7 +58,7 @@ duration: quantity
        | SIGN factor                             -> signed
 ?atom: quantity
      | SIGNAL                                    -> signal
-     | FUNCTION "(" sum ("," sum)* ")"           -> call
+     | FUNCTION "(" sum ("," sum)* window? ")"   -> call
      | "(" formula ")"
 quantity: NUMBER UNIT?
 
@@ -124,8 +125,12 @@ def tree(text: str) -> Formula | Settling:
 def _parser() -> Lark:
     # The tables made of a grammar are kept: lark makes them again for another grammar or version.
     kept = cache_folder("grammars") / f"criteria-{sys.implementation.cache_tag}"
-    grammar = GRAMMAR.replace("@FUNCTIONS@", "|".join(map(re.escape, ex.functions())))
+    grammar = GRAMMAR.replace("@FUNCTIONS@", "|".join(map(re.escape, _functions())))
     return Lark(grammar, parser="lalr", transformer=_Builder(), cache=str(kept))
+
+
+def _functions() -> list[str]:
+    return sorted([*ex.functions(), *ALL])
 
 
 def _syntax(text: str, error: UnexpectedInput) -> str:
@@ -138,7 +143,7 @@ def _syntax(text: str, error: UnexpectedInput) -> str:
     accepted: set[str] = error.interactive_parser.accepts()  # type: ignore[no-untyped-call]
     if "NUMBER" in accepted:
         accepted.discard("SIGN")
-    said = {**_EXPECTED, "FUNCTION": f"a function ({', '.join(ex.functions())})"}
+    said = {**_EXPECTED, "FUNCTION": f"a function ({', '.join(_functions())})"}
     expected = sorted({said.get(n, repr(n.strip("_").lower())) for n in accepted})
     return f"column {position + 1}: found {found}, expected one of: {', '.join(expected)}"
 
@@ -237,13 +242,20 @@ class _Builder(Transformer[Token, "Formula | Settling"]):
         part = _expression(part)
         return _shallow(ex.Operation("negative", (part,))) if sign == "-" else part
 
-    def call(self, function: Token, *arguments: Any) -> ex.Operation:
+    def call(self, function: Token, *rest: Any) -> ex.Operation:
         name = str(function)
-        taken = ex.rule_of(name).arguments
+        window = rest[-1] if isinstance(rest[-1], Interval) else None
+        arguments = rest if window is None else rest[:-1]
+        taken = (ALL[name] if name in ALL else ex.rule_of(name)).arguments
         if taken is not None and len(arguments) != taken:
             values = "one value" if taken == 1 else f"{taken} values"
             raise InputError(f"{name} takes {values}, got {len(arguments)}")
-        return _shallow(ex.Operation(name, tuple(_expression(a) for a in arguments)))
+        given = tuple(_expression(a) for a in arguments)
+        if name in ALL:
+            return _shallow(metric(name, given, window))
+        if window is not None:
+            raise InputError(f"{name} is of single points: it takes no 'after' and no 'from'")
+        return _shallow(ex.Operation(name, given))
 
     def signal(self, name: Token) -> ex.Signal:
         return ex.Signal(str(name))

@@ -9,7 +9,8 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
-from typing import Any, Literal, NamedTuple, cast
+from functools import cached_property
+from typing import Any, ClassVar, Literal, NamedTuple, cast
 
 import numpy as np
 
@@ -17,6 +18,7 @@ from ...errors import InputError
 from ...model.readable import distinct, from_si
 from . import expressions as ex
 from .expressions import BoolArray, Expression, FloatArray, Operation, Signal, Units, Values
+from .metrics import TIME, is_constant, is_of_record
 from .said import last_said, said_at
 
 TINY = 5e-324
@@ -43,6 +45,11 @@ class Record:
     numbers: Values
     """SI; a Boolean is 0 or 1."""
     texts: Mapping[str, list[str]] = field(default_factory=dict)
+
+    @cached_property
+    def values(self) -> Values:
+        """What expressions are evaluated on: ``numbers``, and the time."""
+        return {**self.numbers, TIME: self.time}
 
 
 @dataclass(frozen=True)
@@ -96,6 +103,16 @@ class Comparison:
         bound = abs(float(self.bound.evaluate({})))
         return bound if bound and math.isfinite(bound) else None
 
+    @property
+    def is_timeless(self) -> bool:
+        """Whether a point alone decides it."""
+        return not (is_of_record(self.left) or is_of_record(self.right))
+
+    @property
+    def is_constant(self) -> bool:
+        """Whether it is of the record, and of no point in it."""
+        return is_constant(self.left) and is_constant(self.right)
+
     def leaves(self) -> Iterator[ex.Literal | Signal]:
         """Yield all literals and signals, from left to right."""
         yield from self.left.leaves()
@@ -147,10 +164,9 @@ class Comparison:
 
     def telling(self, record: Record, row: int, units: Units) -> Telling:
         """Return both sides at a row, in the unit in which a person would state them."""
-        values = {name: record.numbers[name][row : row + 1] for name in self.kinds}
         unit = ex.unit_of(self, units, self.left.exponents(units))
         measured, bound = (
-            from_si(float(np.max(side.evaluate(values))), unit)
+            from_si(float(self._course(side, record)[row]), unit)
             for side in (self.measured, self.bound)
         )
         text, limit = distinct(measured, bound, unit)
@@ -164,7 +180,7 @@ class Comparison:
         return _limits(self.measured, bound, self.kind) if math.isfinite(bound) else []
 
     def _course(self, side: Expression, record: Record) -> FloatArray:
-        course = np.asarray(side.evaluate(record.numbers), dtype=float)
+        course = np.asarray(side.evaluate(record.values), dtype=float)
         return np.broadcast_to(course, record.time.shape)
 
 
@@ -173,6 +189,9 @@ class Truth:
     """A Boolean signal. It has no distance: its margin is infinite."""
 
     name: str
+
+    is_timeless: ClassVar = True
+    is_constant: ClassVar = False
 
     @property
     def kinds(self) -> dict[str, Kind]:
@@ -217,6 +236,9 @@ class Says:
     name: str
     verb: Literal["says", "is"]
     text: str
+
+    is_timeless: ClassVar = True
+    is_constant: ClassVar = False
 
     @property
     def kinds(self) -> dict[str, Kind]:

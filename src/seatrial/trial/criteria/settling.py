@@ -40,7 +40,7 @@ def evaluate_settling(settling: Settling, record: Record, units: Units) -> Verdi
     flaw = too_short(time, begin + allowed)
     if flaw:
         return Verdict(False, flaw)
-    course = np.asarray(subject.evaluate(record.numbers), dtype=float)
+    course = np.asarray(subject.evaluate(record.values), dtype=float)
     course = np.broadcast_to(course, time.shape)
     if not np.isfinite(course).all():
         return Verdict(False, no_number(time, course))

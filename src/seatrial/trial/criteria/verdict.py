@@ -62,10 +62,15 @@ def evaluate_formula(node: Formula, record: Record, units: Units) -> Verdict:
     if found is None:  # the window of a part is empty: no value decides
         return Verdict(passed, "holds" if passed else "does not hold")
     predicate, row = found
-    telling, time = predicate.telling(record, row, units), float(record.time[row])
+    telling = predicate.telling(record, row, units)
+    time = None if predicate.is_constant else float(record.time[row])
+    if time is None:
+        detail = f"{telling.text}, limit {telling.limit}"
+    else:
+        detail = _detail(node, evaluation, passed, telling, time)
     return Verdict(
         passed,
-        _detail(node, evaluation, passed, telling, time),
+        detail,
         telling.value,
         telling.unit,
         time,
