@@ -120,7 +120,10 @@ def _sections(part: Part, hulls: list[_Hulls]) -> dict[str, Any]:
     displaced = _displaced(part, density) or volume
     draughts = [t * (displaced / volume) for t in draughts]
     areas = [a * (displaced / volume) for a in areas]
-    found: dict[str, Any] = {"hull_waterline": -hulls[0].waterline}
+    found: dict[str, Any] = {
+        "hull_waterline": -hulls[0].waterline,
+        "hull_freeboard": hulls[0].hull.freeboard,
+    }
     for prefix, name, h, b, t, a in zip(
         ("hull", "side"), ("section", "side"), hulls, beams, draughts, areas, strict=False
     ):
