@@ -47,7 +47,7 @@ def outline(beam: float, draught: float, area: float, freeboard: float, aside: f
         y = half * np.sign(cos) * np.abs(cos) ** power
         below = np.column_stack([y, draught * np.abs(sin) ** power])
     deck = [[-half, -freeboard], [half, -freeboard]]
-    return np.concatenate([below, deck]) + np.array([aside, 0.0])
+    return np.asarray(np.concatenate([below, deck]) + np.array([aside, 0.0]))
 
 
 def _fullness(n: float) -> float:
