@@ -97,7 +97,7 @@ class WaveHull(Component):
             )
         return [
             Slice(outline(b, T, S, self.hull_freeboard, y), body.dx)
-            for body in self._bodies()
+            for body in self._bodies("it has a righting arm at large angles")
             for y in body.hulls
             for b, T, S in zip(body.beam, body.draught, body.area, strict=True)
             if min(b, T, S) > 0.0
@@ -138,7 +138,7 @@ class WaveHull(Component):
         ``waterplane`` is that of the craft's restoring, m2, if it has one. Raises InputError for
         a hull that is not given, or whose waterplane is another.
         """
-        bodies = self._bodies()
+        bodies = self._bodies("it meets waves")
         plane = sum(body.plane for body in bodies)
         if waterplane is not None and not abs(plane - waterplane) <= _LARGEST_ERROR * waterplane:
             raise InputError(
@@ -150,12 +150,12 @@ class WaveHull(Component):
         form = {"round": self.section_form == "arc", "density": density, "gravity": gravity}
         return HullInWaves([shares.in_waves(body, self.hull_waterline, form) for body in bodies])
 
-    def _bodies(self) -> list[_Sections]:
+    def _bodies(self, why: str) -> list[_Sections]:
         """Return the hulls, one or two alike, then a pair at the sides. Raises InputError."""
         if not self.hull_length > 0.0:
             raise InputError(
-                f"{self.name}: its hull is not given, which waves and its righting arm at large "
-                "angles need: hull_length, section_beam, section_draught and section_area"
+                f"{self.name}: {why}, and its hull is not given: hull_length, "
+                "section_beam, section_draught and section_area"
             )
         bodies = [self._sections("section", self.hull_length, self.hull_middle, self.hull_spacing)]
         if self.side_spacing > 0.0:
