@@ -132,7 +132,7 @@ class MarineEngine(Actuator):
         if order == 0.0 or ahead < -self.reversing_speed:
             return 0.0
         most = self._of(self.rated_torque, order)
-        share = self.torque_at_rest + (1.0 - self.torque_at_rest) * max(ahead, 0.0)
+        share: float = self.torque_at_rest + (1.0 - self.torque_at_rest) * max(ahead, 0.0)
         if self.load_time > 0.0:
             loaded = max(side * self._torque, 0.0) / most
             share = min(share, loaded + h / (self.slowness * self.load_time))
