@@ -68,7 +68,7 @@ class Participant:
         return Topic(self.dds, prefix + topic, sample_type(kind))
 
     def close(self) -> None:
-        """Leave the domain, and take all topics along: others are told at once."""
+        """Leave the domain, and take all topics along: others are notified at once."""
         self.dds.__del__()  # the package has no other way before the last reference is gone
 
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any
 
 from seatrial.links.geodesy import Origin
@@ -148,7 +149,7 @@ def fix(link: Ros2Ports, here: Here) -> Fields | None:
         lost = (math.nan,) * 3
         status = {"status": _NO_FIX, "service": _GPS}
         return {"header": header, "status": status, **dict(zip(_PLACE, lost, strict=True))}
-    place = here.origin.geodetic(link.position_n)
+    place = _geodetic(here.origin, link.position_n)
     covariance = here.instruments.covariance("fix", "position_n", world=True)
     return {
         "header": header,
@@ -160,6 +161,12 @@ def fix(link: Ros2Ports, here: Here) -> Fields | None:
 
 
 _PLACE = ("latitude", "longitude", "altitude")
+
+
+@lru_cache(maxsize=8)
+def _geodetic(origin: Origin, position: tuple[float, float, float]) -> tuple[float, float, float]:
+    """Return a place; a receiver gives each several times, and other vehicles theirs between."""
+    return origin.geodetic(position)
 
 
 def velocity(link: Ros2Ports, here: Here) -> Fields | None:

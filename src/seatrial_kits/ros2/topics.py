@@ -40,10 +40,9 @@ PUBLISHED: Mapping[str, Topic] = {
     "joints": Topic("joint_states", "sensor_msgs/msg/JointState"),
     "leg": Topic("leg", "nav_msgs/msg/Path"),
     "diagnostics": Topic("/diagnostics", "diagnostic_msgs/msg/DiagnosticArray"),
-    "description": Topic("robot_description", "std_msgs/msg/String"),
 }
 """Topics that the link writes."""
-LATCHED = ("tf_static", "description", "leg")
+LATCHED = ("tf_static", "leg")
 """Those that late readers get too."""
 
 COMMANDED: Mapping[str, Topic] = {
