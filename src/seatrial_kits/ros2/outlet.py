@@ -8,10 +8,11 @@ from typing import Any
 from seatrial.model.component import NS
 
 from .bag import Bag
+from .description import urdf
 from .message import message
 from .participant import Durability, Participant, Writer
 from .ports import Ros2Ports
-from .published import MEASURED, Fields, Here, leg, odometry, places, transforms
+from .published import BASE, MEASURED, Fields, Here, leg, odometry, places, transforms
 from .topics import LATCHED, PUBLISHED, Names
 
 _OVERDUE = 1.5
@@ -77,6 +78,7 @@ class Outlet:
         now = here.now_ns
         if "tf_static" not in self._writers:
             yield "tf_static", places(link, here)
+            yield "description", {"data": urdf(link.namespace, link.shape, here.prefix + BASE)}
         course = leg(link, here)
         if course is not None and self._leg != link.leg:
             self._leg = link.leg

@@ -38,11 +38,12 @@ PUBLISHED: Mapping[str, Topic] = {
     "temperature": Topic("temperature", "sensor_msgs/msg/Temperature"),
     "battery": Topic("battery", "sensor_msgs/msg/BatteryState"),
     "joints": Topic("joint_states", "sensor_msgs/msg/JointState"),
+    "description": Topic("robot_description", "std_msgs/msg/String"),
     "leg": Topic("leg", "nav_msgs/msg/Path"),
     "diagnostics": Topic("/diagnostics", "diagnostic_msgs/msg/DiagnosticArray"),
 }
 """Topics that the link writes."""
-LATCHED = ("tf_static", "leg")
+LATCHED = ("tf_static", "description", "leg")
 """Those that late readers get too."""
 
 COMMANDED: Mapping[str, Topic] = {

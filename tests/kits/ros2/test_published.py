@@ -133,6 +133,9 @@ def test_the_sensors_of_a_boat(ears):
     (static,) = otter.taken("tf_static")
     antenna = next(t for t in static.transforms if t.child_frame_id == "gnss_link")
     assert vector(antenna.transform.translation).tolist() == [0.0, 0.0, 0.5]
+    (described,) = otter.taken("description")
+    assert described.data.startswith('<robot name="otter">')
+    assert "<visual" in described.data
     speeds = otter.taken("joints")[-1]
     assert speeds.name == ["motor1", "motor2"]
     assert not otter.taken("pressure")
