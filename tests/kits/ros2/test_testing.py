@@ -3,7 +3,7 @@
 import pytest
 
 from seatrial.errors import InputError
-from tests.command import seatrial
+from tests.command import seatrial, seatrial_process
 
 
 @pytest.fixture
@@ -54,7 +54,7 @@ def test_a_bag_has_what_a_recorder_would_have(tmp_path, domain):
     """Read by mcap-ros2-support, which knows nothing of rosbags."""
     from mcap_ros2.reader import read_ros2_messages
 
-    done = seatrial(
+    done = seatrial_process(
         *("run", "under-way", "--vehicle", "otter", "--autopilot", "ros2", "--engine", "direct"),
         *("--set", "stop=0.5 s", "--set", "autopilot.ros2.bag=on", "--out", "run"),
         *("--set", f"autopilot.ros2.domain={domain}"),
@@ -70,3 +70,16 @@ def test_a_bag_has_what_a_recorder_would_have(tmp_path, domain):
     assert len(found["/otter/odometry/ground_truth"]) == 25
     assert found["/otter/leg"][0].poses[1].pose.position.x == 5000.0
     assert found["/otter/imu/data"][7].header.stamp.nanosec == 70_000_000
+
+
+def test_a_run_forked_from_a_process_that_speaks_dds_says_so(tmp_path, domain, otter):
+    """The tests' command runs in this process, and the run in a fork of it: it would hang."""
+    otter.ros2("autopilot.ros2")
+    settings = ("--set", f"autopilot.ros2.domain={domain}", "--set", "stop=0.1 s")
+    done = seatrial(
+        *("run", "under-way", "--vehicle", "otter", "--autopilot", "ros2", "--engine", "direct"),
+        *settings,
+        cwd=tmp_path,
+    )
+    assert done.returncode == 2
+    assert "forked from one that speaks DDS" in done.stderr
