@@ -75,7 +75,7 @@ def test_a_bag_has_what_a_recorder_would_have(tmp_path, domain):
 def test_a_run_forked_from_a_process_that_speaks_dds_says_so(tmp_path, domain, otter):
     """The tests' command runs in this process, and the run in a fork of it: it would hang."""
     otter.ros2("autopilot.ros2")
-    settings = ("--set", f"autopilot.ros2.domain={domain}", "--set", "stop=0.1 s")
+    settings = ("--set", f"autopilot.ros2.domain={domain}", "--set", "stop=1 s")
     done = seatrial(
         *("run", "under-way", "--vehicle", "otter", "--autopilot", "ros2", "--engine", "direct"),
         *settings,
