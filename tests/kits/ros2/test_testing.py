@@ -51,11 +51,12 @@ def test_topics_that_are_not_there_are_named(otter):
 
 
 def test_a_bag_has_what_a_recorder_would_have(tmp_path, domain):
-    """Read by mcap-ros2-support, which knows nothing of rosbags."""
-    from mcap_ros2.reader import read_ros2_messages
+    """Written by the link as an FMU, read by mcap-ros2-support, which knows nothing of rosbags."""
+    from mcap.reader import make_reader
+    from mcap_ros2.decoder import DecoderFactory
 
     done = seatrial_process(
-        *("run", "under-way", "--vehicle", "otter", "--autopilot", "ros2", "--engine", "direct"),
+        *("run", "under-way", "--vehicle", "otter", "--autopilot", "ros2", "--engine", "fmu"),
         *("--set", "stop=0.5 s", "--set", "autopilot.ros2.bag=on", "--out", "run"),
         *("--set", f"autopilot.ros2.domain={domain}"),
         cwd=tmp_path,
@@ -63,8 +64,10 @@ def test_a_bag_has_what_a_recorder_would_have(tmp_path, domain):
     assert done.returncode in (0, 1), done.stderr
     (file,) = (tmp_path / "run/autopilot.ros2").glob("*.mcap")
     found = {}
-    for each in read_ros2_messages(str(file)):
-        found.setdefault(each.channel.topic, []).append(each.ros_msg)
+    with file.open("rb") as opened:
+        reader = make_reader(opened, decoder_factories=[DecoderFactory()])
+        for _, channel, _, content in reader.iter_decoded_messages():
+            found.setdefault(channel.topic, []).append(content)
     assert len(found["/clock"]) == 50
     assert len(found["/otter/imu/data"]) == 50
     assert len(found["/otter/odometry/ground_truth"]) == 25
