@@ -209,7 +209,7 @@ MOVED = {
     "links.mavlink.parameters_ardupilot": "seatrial_kits.mavlink.parameters.ardupilot",
     "links.mavlink.parameters_listed": "seatrial_kits.mavlink.parameters.listed",
     "links.mavlink.parameters_px4": "seatrial_kits.mavlink.parameters.px4",
-    "links.mavlink.parameters_servo": "seatrial_kits.mavlink.parameters.servo",
+    "links.mavlink.parameters_servo": "seatrial.links.servos",
     "links.mavlink.parameters_simulation": "seatrial_kits.mavlink.parameters.simulation",
     "links.mavlink.parameters_tunable": "seatrial_kits.mavlink.parameters.tunable",
     "links.mavlink.plan": "seatrial_kits.mavlink.missions.plan",

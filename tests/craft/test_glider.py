@@ -17,7 +17,7 @@ PATH = math.radians(25)
 STATES = ("attitude.theta", "velocity.u", "velocity.w")
 
 
-def glider(variant=None, **values):
+def glider(variant="graver", **values):
     return shipped("fitted-craft", "glider.hull", variant, **{"position_start.z": 300, **values})
 
 

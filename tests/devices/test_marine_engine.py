@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from seatrial.devices.actuators.marine_engine import MarineEngine
+from seatrial.errors import InputError
 
 from .running import run, started
 
@@ -107,6 +108,11 @@ def test_the_telegraph_orders_shares_of_the_rated_speed():
         assert rows[-1, 0] == pytest.approx(share * most, rel=1e-6)
     assert turned(propeller, 1.0, telegraph="stop", command=1.0)[-1, 0] == 0.0
     assert turned(propeller, 1.0, telegraph="remote", command=1.0)[-1, 0] > 0.0
+
+
+def test_an_order_that_no_telegraph_has_is_refused():
+    with pytest.raises(InputError, match=r"telegraph order 'haf ahead'.*'half ahead'"):
+        turned(propeller, 1.0, telegraph="haf ahead")
 
 
 def test_failures_stop_halve_and_slow_the_engine():

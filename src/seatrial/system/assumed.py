@@ -5,6 +5,7 @@ Of a craft at the surface with hulls in ``[shape]``, marked ``assumed``, each by
 - sections: 11 of each hull's own, half ellipses, S = pi b T / 4; beams times one factor so that
   the waterplane is that of the restoring, draughts times one so that the hulls displace the mass;
 - without ``waterplane_area``, ``GM_T`` and ``GM_L``: of these sections, GM = I / V - (z_B - z_G);
+- freeboard: of the first hull;
 - windage: the outline above the water line, seen from ahead and from abeam;
 - ``terms``, if the file gives none: those of the component, wave-loads and wind-loads.
 
@@ -46,6 +47,8 @@ def give_assumed(part: Part) -> None:
     if "terms" in variables and "terms" not in part.given and found:
         own = str(variables["terms"].start).split()
         found["terms"] = " ".join([*own, *(term for term in _AT_SEA if term not in own)])
+    if hulls is not None:
+        found["hull_freeboard"] = hulls[0].hull.freeboard
     for name, value in found.items():
         if name in variables and name not in part.given:
             part.given[name] = Given(value, file, f"{_FORMULAS[_kind(name)]}", "assumed")
@@ -54,6 +57,7 @@ def give_assumed(part: Part) -> None:
 _FORMULAS = {
     "sections": "the shape's hulls: half ellipses, scaled to waterplane and displacement",
     "hydrostatics": "of the shape's hulls: GM = I / V - (z_B - z_G)",
+    "freeboard": "of the shape's first hull",
     "windage": "the shape's outline above the water line",
     "terms": "of the component, with waves and wind as the shape has them",
 }
@@ -64,6 +68,8 @@ def _kind(name: str) -> str:
         return "windage"
     if name == "terms":
         return "terms"
+    if name == "hull_freeboard":
+        return "freeboard"
     return "hydrostatics" if name in ("waterplane_area", "GM_T", "GM_L") else "sections"
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import zlib
 from dataclasses import replace
 from typing import Any
@@ -39,6 +40,7 @@ def give_parameters(system: System, part: Part, profiles: Profiles) -> None:
         if entry.parameters.endswith(OWN):
             values = values.own(part.instance.variables, part.fmu, f"{where}.parameters")
         _give_parameter_set(part, values)
+        _give_shape(part, placed)
     if entry.profile is not None:
         profile, section = profiles.find(entry.profile, f"{where}.profile")
         _give_profile(part, section, profile, f"{where}.profile")
@@ -93,6 +95,17 @@ def _give_parameter_set(part: Part, values: ParameterSet) -> None:
         scalars = settable(part.instance.variables, port, values.origin)
         part.given.update(from_entry(value, scalars, values.origin, values.folder))
     give_assumed(part)
+
+
+def _give_shape(part: Part, placed: Placed) -> None:
+    """Give the whole vehicle's shape to whoever shows it to others."""
+    for name in part.instance.variables.of_role("shape"):
+        reference, folder = placed.entry.parameters, placed.scope.read_from.path.parent
+        assert reference is not None
+        vehicle = load_vehicle(split_reference(reference, placed.entry.fmu)[0], folder)
+        parts = [part for table in vehicle.file.shape.values() for part in table]
+        written = json.dumps([each.model_dump(exclude_none=True) for each in parts])
+        part.given[name] = Given(written, f"shape of {vehicle.read_from.name}")
 
 
 def _give_profile(part: Part, section: str, profile: Profile, where: str) -> None:

@@ -15,7 +15,7 @@ Values = dict[str, float]
 
 
 class Commands:
-    """Readers of the commands of one vehicle; ``say`` is told once what is not followed.
+    """Readers of the commands of one vehicle; ``say`` is notified once of what is not followed.
 
     Actuators come before the pilot: while any of them has a valid command, those without one
     are neutral. To the pilot goes what came last of velocity, wrench and goal; velocity and

@@ -143,6 +143,8 @@ class Ros2(Ros2Ports):
         here = Here(now_ns, self.frame_prefix, self._origin, self._field, self._instruments)
         if self.bag == "on" and self.run_folder and self._bag is None:
             self._bag = self._outlet.bag = Bag(Path(self.run_folder, self.name))
+        if self._commands is None:
+            self._outlet.open(self, here)
         commands = self._begun()
         if self._lockstep is not None:
             self._lockstep.meet(self._outlet.matches)

@@ -1,6 +1,6 @@
 """Types of the package cyclonedds, made at run time from the definitions of messages.
 
-DDS is told names and fields; samples are serialised by rosbags, as plain CDR, by code that it
+DDS gets names and fields; samples are serialised by rosbags, as plain CDR, by code that it
 generates for each type.
 """
 

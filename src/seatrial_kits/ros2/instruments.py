@@ -40,6 +40,8 @@ class Instruments:
             for key, kinds in SENSORS.items()
         }
 
+        self._covariances: dict[tuple[str, str], list[float]] = {}
+
     def period_ns(self, key: str) -> int:
         """Return the sample period of a topic's sensor, ns."""
         return round(1e9 * axis(self._of.get(key, {}).get("period", _LONGEST_S)))
@@ -55,8 +57,12 @@ class Instruments:
         diag(noise^2 + instability^2) of the sensor's own axes, turned to ahead-left-up, or to
         east-north-up for a sensor whose axes are those of the ``world``.
         """
-        own = np.diag([v * v for v in self.deviations(key, quantity)])
-        return [float(v) for v in turned(own, TO_ENU if world else TO_FLU).ravel()]
+        known = key, quantity
+        if known not in self._covariances:
+            own = np.diag([v * v for v in self.deviations(key, quantity)])
+            found = turned(own, TO_ENU if world else TO_FLU).ravel()
+            self._covariances[known] = [float(v) for v in found]
+        return self._covariances[known]
 
     def deviations(self, key: str, quantity: str, count: int = 3) -> list[float]:
         """Return the standard deviations of a quantity: noise and slow error together."""

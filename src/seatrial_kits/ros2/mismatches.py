@@ -6,8 +6,8 @@ DDS says nothing of them to anybody. Of each the link says once what it is, and 
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Mapping
-from typing import Any
+from collections.abc import Callable, Iterator, Mapping
+from typing import Any, NamedTuple
 
 from .definitions import dds_name
 from .participant import Participant
@@ -17,12 +17,18 @@ _EVERY_S = 0.5
 _MOST = 200
 
 
-class Mismatches:
-    """Looks at all endpoints of the domain; ``say`` is told of those that do not fit.
+class Endpoint(NamedTuple):
+    """A reader or writer of somebody, as it was announced."""
 
-    ``read`` and ``written`` are the topics of the link, by name, with their types; those in
-    ``latched`` are kept for late readers.
-    """
+    topic: str
+    kind: str
+    """The type's name in DDS."""
+    reliability: Any
+    durability: Any
+
+
+class Mismatches:
+    """Looks at all endpoints of the domain; ``say`` is notified of those that do not fit."""
 
     def __init__(self, participant: Participant, say: Callable[[str], None]) -> None:
         from cyclonedds.builtin import (
@@ -32,40 +38,46 @@ class Mismatches:
         )
 
         self._tell, self._next = say, 0.0
-        self._publishers = BuiltinDataReader(participant.dds, BuiltinTopicDcpsPublication)
-        self._subscribers = BuiltinDataReader(participant.dds, BuiltinTopicDcpsSubscription)
+        topics = BuiltinTopicDcpsPublication, BuiltinTopicDcpsSubscription
+        self._announced = [BuiltinDataReader(participant.dds, topic) for topic in topics]
+        self._known: tuple[set[Endpoint], set[Endpoint]] = (set(), set())
+        """Publishers, and subscribers."""
         self._said: set[str] = set()
 
     def look(
         self, read: Mapping[str, str], written: Mapping[str, str], latched: frozenset[str]
     ) -> None:
-        """Look, some times a second."""
+        """Look, some times a second, at what was announced since, and at topics that came since.
+
+        ``read`` and ``written`` are the topics of the link, by name, with their types; those in
+        ``latched`` are kept for late readers.
+        """
         if time.monotonic() < self._next:
             return
         self._next = time.monotonic() + _EVERY_S
-        for reader, ours in ((self._publishers, read), (self._subscribers, written)):
-            for endpoint in reader.read(_MOST):
-                if not endpoint.sample_info.valid_data:
-                    continue
-                name = endpoint.topic_name.removeprefix("rt")
-                if name in ours:
-                    self._compare(name, ours[name], endpoint, ours is read, name in latched)
+        for reader, known in zip(self._announced, self._known, strict=True):
+            known |= set(_taken(reader))
+        for endpoint in self._known[0]:
+            if endpoint.topic in read:
+                self._compare(endpoint, "a publisher", read[endpoint.topic])
+        for endpoint in self._known[1]:
+            if endpoint.topic in written:
+                kept = endpoint.topic in latched
+                self._compare(endpoint, "a subscriber", written[endpoint.topic], latched=kept)
 
-    def _compare(self, name: str, kind: str, endpoint: Any, publishes: bool, latched: bool) -> None:
+    def _compare(self, endpoint: Endpoint, who: str, kind: str, *, latched: bool = True) -> None:
         from cyclonedds.core import Policy
 
-        who = "a publisher" if publishes else "a subscriber"
-        if endpoint.type_name != dds_name(kind):
-            found = endpoint.type_name.replace("::dds_::", "/").replace("::", "/")
+        name = endpoint.topic
+        if endpoint.kind != dds_name(kind):
+            found = endpoint.kind.replace("::dds_::", "/").replace("::", "/")
             self._say(
                 f"{name}: {who} has the type {found.removesuffix('_')}, {kind} is needed: they do "
                 "not match"
             )
-            return
-        reliability, durability = endpoint.qos[Policy.Reliability], endpoint.qos[Policy.Durability]
-        if publishes and reliability == Policy.Reliability.BestEffort:
+        elif who == "a publisher" and endpoint.reliability == Policy.Reliability.BestEffort:
             self._say(f"{name}: {who} is best effort, reliable is needed: they do not match")
-        if not publishes and not latched and durability != Policy.Durability.Volatile:
+        elif not latched and endpoint.durability != Policy.Durability.Volatile:
             self._say(
                 f"{name}: {who} asks for transient local, which this topic is not: make it "
                 "volatile, or they do not match"
@@ -75,3 +87,12 @@ class Mismatches:
         if what not in self._said:
             self._said.add(what)
             self._tell(what)
+
+
+def _taken(reader: Any) -> Iterator[Endpoint]:
+    from cyclonedds.core import Policy
+
+    for each in reader.take(_MOST):
+        if each.sample_info.valid_data:
+            quality = each.qos[Policy.Reliability], each.qos[Policy.Durability]
+            yield Endpoint(each.topic_name.removeprefix("rt"), each.type_name, *quality)

@@ -8,10 +8,11 @@ from typing import Any
 from seatrial.model.component import NS
 
 from .bag import Bag
+from .description import urdf
 from .message import message
 from .participant import Durability, Participant, Writer
 from .ports import Ros2Ports
-from .published import MEASURED, Fields, Here, leg, odometry, places, transforms
+from .published import BASE, MEASURED, Fields, Here, leg, measured, odometry, places, transforms
 from .topics import LATCHED, PUBLISHED, Names
 
 _OVERDUE = 1.5
@@ -19,7 +20,7 @@ _OVERDUE = 1.5
 
 
 class Outlet:
-    """Writers of one vehicle's topics, made as there is something to write.
+    """Writers of one vehicle's topics.
 
     The clock goes out at every instant, the truth every ``truth_period``, a measurement when it
     changes, and `_OVERDUE` periods of its sensor after that: one that is stuck is seen. In an
@@ -32,10 +33,23 @@ class Outlet:
         self._writers: dict[str, Writer | None] = {}
         self._last: dict[str, tuple[Fields, int]] = {}
         self._truth_ns, self._leg = -(10**18), 0
+        self._measured: list[str] = []
         self.bag: Bag | None = None
         """Gets all that is written, if there is one."""
         self._written: list[tuple[Writer, Any]] = []
         """What the last instant wrote."""
+
+    def open(self, link: Ros2Ports, here: Here) -> None:
+        """Make the writers of what the vehicle has, and write what stays as it is.
+
+        Nodes meet them before the first instant is written.
+        """
+        self._measured = measured(link)
+        for key in ("clock", "tf", "odometry", *self._measured, *(["leg"] if link.leg else [])):
+            self._writer(key)
+        self.put("tf_static", places(link, here), here.now_ns)
+        described = urdf(link.namespace, link.shape, here.prefix + BASE)
+        self.put("description", {"data": described}, here.now_ns)
 
     def write(self, link: Ros2Ports, here: Here) -> None:
         """Write what is due."""
@@ -75,14 +89,12 @@ class Outlet:
 
     def _due(self, link: Ros2Ports, here: Here) -> Iterator[tuple[str, Fields]]:
         now = here.now_ns
-        if "tf_static" not in self._writers:
-            yield "tf_static", places(link, here)
         course = leg(link, here)
         if course is not None and self._leg != link.leg:
             self._leg = link.leg
             yield "leg", course
-        for key, make in MEASURED.items():
-            fields = make(link, here)
+        for key in self._measured:
+            fields = MEASURED[key].make(link, here)
             if fields is not None and self._is_new(key, fields, here):
                 yield key, fields
         if now - self._truth_ns >= round(link.truth_period * NS):

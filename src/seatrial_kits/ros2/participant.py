@@ -26,6 +26,8 @@ LOOPBACK = (
 )
 """What nodes must have in CYCLONEDDS_URI too, to be found without multicast."""
 _URI = "CYCLONEDDS_URI"
+_spoken_in: set[int] = set()
+"""Processes in which a participant was made: this one, and one that it was forked from."""
 
 Durability = Literal["volatile", "latched"]
 
@@ -44,6 +46,7 @@ class Participant:
         except ImportError:
             raise InputError(f"ROS 2 needs cyclonedds, which is not installed: {INSTALL}") from None
         _check_middleware()
+        _check_process()
         self.domain = domain if domain >= 0 else _environment_domain()
         try:
             with _configured(), confined_sockets(reaches_others()):
@@ -68,7 +71,7 @@ class Participant:
         return Topic(self.dds, prefix + topic, sample_type(kind))
 
     def close(self) -> None:
-        """Leave the domain, and take all topics along: others are told at once."""
+        """Leave the domain, and take all topics along: others are notified at once."""
         self.dds.__del__()  # the package has no other way before the last reference is gone
 
 
@@ -117,6 +120,16 @@ def _quality(durability: Durability, depth: int) -> Any:
         # Plain CDR: nodes of Humble know no other.
         Policy.DataRepresentation(use_cdrv0_representation=True, use_xcdrv2_representation=False),
     )
+
+
+def _check_process() -> None:
+    """Raise InputError in a fork of a process that spoke DDS: its threads are not here."""
+    _spoken_in.add(os.getpid())
+    if len(_spoken_in) > 1:
+        raise InputError(
+            "this process was forked from one that speaks DDS, whose library cannot follow: run "
+            "the trial from a process of its own (seatrial run)"
+        )
 
 
 def _check_middleware() -> None:

@@ -98,6 +98,7 @@ class Ros2Ports(Logging, Reachable, TrueMotion, Sampled):
     full_moment = Parameter(
         0.0, "N.m", "moment at full manual control, to starboard; 0: none", min=0.0
     )
+    shape = Parameter("", "1", "the vehicle's shape, for its description: JSON", role="shape")
     bag = Parameter("off", "1", "whether a bag of all it writes is kept", choices=("off", "on"))
     actuators = Parameter(
         "",

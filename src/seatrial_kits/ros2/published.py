@@ -1,7 +1,7 @@
 """What the link writes: one function per topic, from the component's inputs to fields of messages.
 
-Each returns the message, None where nothing is measured. World axes are east-north-up, body axes
-ahead-left-up (`frames`).
+Each returns the message, None while the measurement is not valid. World axes are east-north-up,
+body axes ahead-left-up (`frames`).
 """
 
 from __future__ import annotations
@@ -9,7 +9,8 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import Any
+from functools import lru_cache
+from typing import Any, NamedTuple
 
 from seatrial.links.geodesy import Origin
 from seatrial.links.truth import Truth
@@ -104,7 +105,7 @@ def _transform(here: Here, parent: str, child: str, transform: Fields) -> Fields
 
 def imu(link: Ros2Ports, here: Here) -> Fields | None:
     """sensor_msgs/Imu: rates and force; attitude where roll, pitch and heading are measured."""
-    if not is_connected(*link.gyro) or not link.gyro_valid:
+    if not link.gyro_valid:
         return None
     values: dict[str, Any] = {
         "header": here.header(FRAMES["imu"]),
@@ -132,23 +133,21 @@ def imu(link: Ros2Ports, here: Here) -> Fields | None:
 
 def compass(link: Ros2Ports, here: Here) -> Fields | None:
     """sensor_msgs/MagneticField, T: the earth's, turned by the measured heading and tilt."""
-    if not is_connected(link.heading) or not link.heading_valid:
+    if not link.heading_valid:
         return None
     tilt = link.roll_pitch if is_connected(*link.roll_pitch) else (0.0, 0.0)
     field = to_body((*tilt, link.heading), here.field)
     return {"header": here.header(FRAMES["compass"]), "magnetic_field": flu(field)}
 
 
-def fix(link: Ros2Ports, here: Here) -> Fields | None:
+def fix(link: Ros2Ports, here: Here) -> Fields:
     """sensor_msgs/NavSatFix: WGS 84, degrees; without a fix its status says so."""
-    if not is_connected(*link.position_n):
-        return None
     header = here.header(FRAMES["fix"])
     if not link.position_valid:
         lost = (math.nan,) * 3
         status = {"status": _NO_FIX, "service": _GPS}
         return {"header": header, "status": status, **dict(zip(_PLACE, lost, strict=True))}
-    place = here.origin.geodetic(link.position_n)
+    place = _geodetic(here.origin, link.position_n)
     covariance = here.instruments.covariance("fix", "position_n", world=True)
     return {
         "header": header,
@@ -162,16 +161,22 @@ def fix(link: Ros2Ports, here: Here) -> Fields | None:
 _PLACE = ("latitude", "longitude", "altitude")
 
 
+@lru_cache(maxsize=8)
+def _geodetic(origin: Origin, position: tuple[float, float, float]) -> tuple[float, float, float]:
+    """Return a place; a receiver gives each several times, and other vehicles theirs between."""
+    return origin.geodetic(position)
+
+
 def velocity(link: Ros2Ports, here: Here) -> Fields | None:
     """geometry_msgs/TwistStamped of GNSS: over ground, east-north-up, m/s."""
-    if not is_connected(*link.velocity_n) or not link.position_valid:
+    if not link.position_valid:
         return None
     return {"header": here.header(MAP), "twist": {"linear": enu(link.velocity_n)}}
 
 
 def pressure(link: Ros2Ports, here: Here) -> Fields | None:
     """sensor_msgs/FluidPressure, Pa, absolute: of fresh water under standard air."""
-    if not is_connected(link.depth) or not link.depth_valid:
+    if not link.depth_valid:
         return None
     per_metre = _FRESH_WATER * STANDARD_GRAVITY
     (deviation,) = here.instruments.deviations("pressure", "depth", 1)
@@ -184,7 +189,7 @@ def pressure(link: Ros2Ports, here: Here) -> Fields | None:
 
 def dvl(link: Ros2Ports, here: Here) -> Fields | None:
     """geometry_msgs/TwistWithCovarianceStamped: over the bottom, in base_link; none without it."""
-    if not is_connected(*link.velocity_b) or not link.velocity_b_valid:
+    if not link.velocity_b_valid:
         return None
     twist = {"twist": {"linear": flu(link.velocity_b)}}
     return {"header": here.header(BASE), "twist": twist}
@@ -192,15 +197,13 @@ def dvl(link: Ros2Ports, here: Here) -> Fields | None:
 
 def water_speed(link: Ros2Ports, here: Here) -> Fields | None:
     """geometry_msgs/TwistStamped: ahead through the water, in base_link, m/s."""
-    if not is_connected(link.water_speed) or not link.water_speed_valid:
+    if not link.water_speed_valid:
         return None
     return {"header": here.header(BASE), "twist": {"linear": (link.water_speed, 0.0, 0.0)}}
 
 
-def water_depth(link: Ros2Ports, here: Here) -> Fields | None:
+def water_depth(link: Ros2Ports, here: Here) -> Fields:
     """sensor_msgs/Range below the transducer; without an echo inf, as REP 117 has it."""
-    if not is_connected(link.water_depth):
-        return None
     return {
         "header": here.header(FRAMES["water_depth"]),
         "radiation_type": _SONAR,
@@ -211,32 +214,28 @@ def water_depth(link: Ros2Ports, here: Here) -> Fields | None:
 
 def wind(link: Ros2Ports, here: Here) -> Fields | None:
     """geometry_msgs/TwistStamped: velocity of the apparent wind in base_link, m/s."""
-    if not is_connected(link.wind_speed) or not link.wind_valid:
+    if not link.wind_valid:
         return None
     speed, angle = link.wind_speed, link.wind_angle
     blows = flu((speed * math.cos(angle), speed * math.sin(angle), 0.0))
     return {"header": here.header(BASE), "twist": {"linear": blows}}
 
 
-def leak(link: Ros2Ports, here: Here) -> Fields | None:
+def leak(link: Ros2Ports, here: Here) -> Fields:
     """std_msgs/Bool."""
-    return {"data": link.leaking > 0.5} if is_connected(link.leaking) else None
+    return {"data": link.leaking > 0.5}
 
 
-def temperature(link: Ros2Ports, here: Here) -> Fields | None:
+def temperature(link: Ros2Ports, here: Here) -> Fields:
     """sensor_msgs/Temperature of the water, degrees Celsius."""
-    if not is_connected(link.water_temperature):
-        return None
     return {
         "header": here.header(FRAMES["temperature"]),
         "temperature": link.water_temperature - _CELSIUS,
     }
 
 
-def battery(link: Ros2Ports, here: Here) -> Fields | None:
+def battery(link: Ros2Ports, here: Here) -> Fields:
     """sensor_msgs/BatteryState; a current that discharges is negative there."""
-    if not is_connected(link.voltage):
-        return None
     unknown = math.nan
     return {
         "header": here.header(BASE),
@@ -250,7 +249,7 @@ def battery(link: Ros2Ports, here: Here) -> Fields | None:
     }
 
 
-def joints(link: Ros2Ports, here: Here) -> Fields | None:
+def joints(link: Ros2Ports, here: Here) -> Fields:
     """sensor_msgs/JointState: angles of servos, rad, and speeds of motors, rad/s."""
     angles = {n: v for n, v in zip(JOINTS, link.joint, strict=True) if is_connected(v)}
     speeds = {
@@ -258,8 +257,6 @@ def joints(link: Ros2Ports, here: Here) -> Fields | None:
         for n, v in zip(range(1, len(MOTORS) + 1), link.motor_speed, strict=True)
         if is_connected(v)
     }
-    if not angles and not speeds:
-        return None
     return {
         "header": here.header(BASE),
         "name": [*angles, *speeds],
@@ -287,19 +284,37 @@ FRAMES = {
 }
 """Frames of sensors, by key of their topics."""
 
-MEASURED: Mapping[str, Maker] = {
-    "imu": imu,
-    "compass": compass,
-    "fix": fix,
-    "velocity": velocity,
-    "pressure": pressure,
-    "dvl": dvl,
-    "water_speed": water_speed,
-    "water_depth": water_depth,
-    "wind": wind,
-    "leak": leak,
-    "temperature": temperature,
-    "battery": battery,
-    "joints": joints,
+
+class Measurement(NamedTuple):
+    """A topic of measurements: the inputs that say whether the vehicle has it, and its messages."""
+
+    ports: tuple[str, ...]
+    make: Maker
+
+
+MEASURED: Mapping[str, Measurement] = {
+    "imu": Measurement(("gyro",), imu),
+    "compass": Measurement(("heading",), compass),
+    "fix": Measurement(("position_n",), fix),
+    "velocity": Measurement(("velocity_n",), velocity),
+    "pressure": Measurement(("depth",), pressure),
+    "dvl": Measurement(("velocity_b",), dvl),
+    "water_speed": Measurement(("water_speed",), water_speed),
+    "water_depth": Measurement(("water_depth",), water_depth),
+    "wind": Measurement(("wind_speed",), wind),
+    "leak": Measurement(("leaking",), leak),
+    "temperature": Measurement(("water_temperature",), temperature),
+    "battery": Measurement(("voltage",), battery),
+    "joints": Measurement(("joint", "motor_speed"), joints),
 }
 """Topics of measurements by key: written as they change, and at the period of their sensor."""
+
+
+def measured(link: Ros2Ports) -> list[str]:
+    """Return the keys of what the vehicle measures, now or later."""
+
+    def is_there(port: str) -> bool:
+        value = getattr(link, port)
+        return any(map(is_connected, value if isinstance(value, tuple) else (value,)))
+
+    return [key for key, each in MEASURED.items() if any(map(is_there, each.ports))]

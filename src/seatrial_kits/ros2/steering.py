@@ -17,7 +17,7 @@ _FARTHEST = 1e6
 
 @dataclass(frozen=True)
 class Orders:
-    """What guidance is told; see its inputs. {n}, SI, rad."""
+    """Orders to guidance; see its inputs. {n}, SI, rad."""
 
     mode: str = "hold"
     manual: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 0.0)

@@ -38,9 +38,9 @@ PUBLISHED: Mapping[str, Topic] = {
     "temperature": Topic("temperature", "sensor_msgs/msg/Temperature"),
     "battery": Topic("battery", "sensor_msgs/msg/BatteryState"),
     "joints": Topic("joint_states", "sensor_msgs/msg/JointState"),
+    "description": Topic("robot_description", "std_msgs/msg/String"),
     "leg": Topic("leg", "nav_msgs/msg/Path"),
     "diagnostics": Topic("/diagnostics", "diagnostic_msgs/msg/DiagnosticArray"),
-    "description": Topic("robot_description", "std_msgs/msg/String"),
 }
 """Topics that the link writes."""
 LATCHED = ("tf_static", "description", "leg")

@@ -17,11 +17,11 @@ _FOREIGN_NS = 60_000_000_000
 
 
 class Watched:
-    """The reader of one topic; ``say`` is told once what is refused, ``refused`` counts it.
+    """The reader of one topic; ``say`` is notified once of what is refused, ``refused`` counts it.
 
     A publisher owns the topic for as long as its commands are valid: what another one sends
     then is refused. So is what is not finite, and a stamp that is older than ``timeout``, s. A
-    stamp of another clock is told, and the time of arrival taken.
+    stamp of another clock is reported, and the time of arrival taken.
     """
 
     def __init__(
@@ -35,7 +35,7 @@ class Watched:
         self.name, self.kind, self.timeout = name, kind, timeout
         self.reader = participant.reader(name, kind, DEPTH)
         self.refused = self.late = 0
-        self._told: set[str] = set()
+        self._reported: set[str] = set()
         self._say = say
         self._owner, self._owned_at = 0, -1e9
         self._queue: deque[Any] = deque(maxlen=DEPTH)
@@ -114,6 +114,6 @@ class Watched:
         self._tell(why)
 
     def _tell(self, what: str) -> None:
-        if what not in self._told:
-            self._told.add(what)
+        if what not in self._reported:
+            self._reported.add(what)
             self._say(f"{self.name}: {what}")

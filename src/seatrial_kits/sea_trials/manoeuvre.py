@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from typing import ClassVar
 
+import numpy as np
+
 from seatrial.control.guidance_orders import MANUAL_AXES, NED
 from seatrial.model.component import Input, Output, Parameter, Terminal, terminal
 from seatrial.model.sampled import Sampled
@@ -41,8 +43,8 @@ _FOUND = 0.005
 _SPEED_SHARE, _RATE_SHARE = 0.01, 0.02
 _PATIENCE = 20
 """Windows after which an order ends though nothing has become steady."""
-_SURE = 5.0
-"""How long a speed is down before that ends an order, s: noise alone does not."""
+_LINE = 2.0
+"""Over which a speed is taken to fall evenly, s."""
 _ASTERN = -0.5
 """Speed order before a manoeuvre that begins at rest, while the craft still moves ahead."""
 _WATCHED = ("speed", "heading", "rate", "depth", "pitch", "helm")
@@ -299,9 +301,7 @@ class Manoeuvre(HelmForRate, Sampled):
             return self._has_lasted(LASTING)
         if order.until == SLOW:
             slowest: float = self._fast * (self.slow if order.speed == 0.0 else 0.0)
-            count = min(max(round(_SURE / self.period), 1), self._samples)
-            latest = self._windows["speed"][-count:]
-            return len(latest) == count and max(latest) <= slowest
+            return self._is_down_to(slowest)
         if order.until == SETTLED:
             found = order.by != RATE or self._is_found(order.share)
             turning = self._is_steady("rate", _RATE_SHARE, _RATE)
@@ -326,6 +326,20 @@ class Manoeuvre(HelmForRate, Sampled):
         if not self._is_steady("helm", 0.0, _FOUND):
             return False
         return abs(self._mean("rate") / self._rate - share) <= _FOUND
+
+    def _is_down_to(self, slowest: float) -> bool:
+        """Return whether the speed is no more than that, within four standard errors of its line.
+
+        Of the latest seconds: one noisy measurement does not end an order.
+        """
+        count = min(max(round(_LINE / self.period), 3), self._samples)
+        latest = np.array(self._windows["speed"][-count:])
+        if len(latest) < count:
+            return False
+        since = np.arange(1.0 - count, 1.0)
+        slope, now = np.polyfit(since, latest, 1)
+        error = np.sqrt(np.square(latest - slope * since - now).sum() / max(count - 2, 1))
+        return bool(now + 8.0 * error / np.sqrt(count) <= slowest)
 
     def _has_lasted(self, longest: float) -> bool:
         """Return whether the order in force has lasted so long, s."""

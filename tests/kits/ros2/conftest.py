@@ -1,6 +1,7 @@
 import os
 import subprocess
 import sys
+import zlib
 from pathlib import Path
 
 import pytest
@@ -11,10 +12,10 @@ _DOMAINS = iter(range(100))
 
 
 @pytest.fixture(scope="module")
-def domain(worker_id):
-    """A domain of this module alone: tests of others run at the same time."""
+def domain(worker_id, testrun_uid):
+    """A domain of this module alone: other tests, and other runs of tests, go on meanwhile."""
     worker = int(worker_id.removeprefix("gw")) if worker_id.startswith("gw") else 0
-    return 1 + (worker * 12 + next(_DOMAINS)) % 100
+    return 1 + (zlib.crc32(testrun_uid.encode()) + worker * 12 + next(_DOMAINS)) % 100
 
 
 @pytest.fixture

@@ -1,4 +1,4 @@
-"""What other nodes do wrong: refused or counted, told once, and never fatal."""
+"""What other nodes do wrong: refused or counted, reported once, and never fatal."""
 
 import logging
 import math
@@ -90,9 +90,9 @@ def test_numbers_that_are_not_finite_and_beyond_the_limits(otter, node, caplog):
         sent(simulation, writer, *map(Float64, (math.nan, math.inf, -math.inf)))
     assert simulation.get(f"{LINK}refused") == 3
     assert simulation.get(f"{LINK}source") == "none"
-    told = [each.message for each in caplog.records if "not finite" in each.message]
-    assert len(told) == 1
-    assert PORT in told[0]
+    reported = [each.message for each in caplog.records if "not finite" in each.message]
+    assert len(reported) == 1
+    assert PORT in reported[0]
     sent(simulation, writer, Float64(1e9))
     assert pulse(simulation) == pytest.approx(1.9e-3)
     sent(simulation, writer, Float64(-1e300))
@@ -127,7 +127,7 @@ def test_a_flood_and_a_huge_message_cost_no_more_than_a_step(otter, node):
     assert simulation.get(f"{LINK}target_speed") == 1.0
 
 
-def test_stamps_of_another_clock_are_told_and_old_ones_dropped(otter, node, caplog):
+def test_stamps_of_another_clock_are_reported_and_old_ones_dropped(otter, node, caplog):
     simulation = otter()
     writer = node.writer("/otter/cmd_vel_stamped", TwistStamped)
     twist = Twist(Vector3(x=1.0), Vector3())

@@ -13,7 +13,7 @@ from seatrial_kits.ros2.component import Ros2
 from seatrial_kits.ros2.instruments import Instruments
 from seatrial_kits.ros2.message import message
 from seatrial_kits.ros2.participant import Participant
-from seatrial_kits.ros2.published import MEASURED, Here
+from seatrial_kits.ros2.published import MEASURED, Here, measured
 from seatrial_kits.ros2.topics import COMMANDED, PUBLISHED, Names
 
 
@@ -133,6 +133,9 @@ def test_the_sensors_of_a_boat(ears):
     (static,) = otter.taken("tf_static")
     antenna = next(t for t in static.transforms if t.child_frame_id == "gnss_link")
     assert vector(antenna.transform.translation).tolist() == [0.0, 0.0, 0.5]
+    (described,) = otter.taken("description")
+    assert described.data.startswith('<robot name="otter">')
+    assert "<visual" in described.data
     speeds = otter.taken("joints")[-1]
     assert speeds.name == ["motor1", "motor2"]
     assert not otter.taken("pressure")
@@ -151,16 +154,18 @@ def here(**instruments):
 
 
 def test_nothing_is_measured_that_nothing_is_connected_to(link):
-    assert [key for key, make in MEASURED.items() if make(link, here()) is not None] == []
+    assert measured(link) == []
+    link.velocity_n, link.motor_speed = (0.0, 0.0, 0.0), [3.0, *[1e30] * 7]
+    assert measured(link) == ["velocity", "joints"]
 
 
 def test_the_wind_blows_to_port_of_the_bow_and_the_joints_are_those_that_are_there(link):
     link.wind_speed, link.wind_angle, link.wind_valid = 5.0, math.radians(-30.0), True
-    linear = MEASURED["wind"](link, here())["twist"]["linear"]
+    linear = MEASURED["wind"].make(link, here())["twist"]["linear"]
     assert linear == pytest.approx((5.0 * math.cos(math.radians(30.0)), 2.5, 0.0))
     link.joint, speeds = (0.1, 1.2, 1e30), [30.0, *[1e30] * 7]
     link.motor_speed = speeds
-    joints = MEASURED["joints"](link, here())
+    joints = MEASURED["joints"].make(link, here())
     assert joints["name"] == ["rudder", "sail", "motor1"]
     assert joints["position"][:2] == [0.1, 1.2]
     assert joints["velocity"][2] == 30.0
@@ -169,22 +174,22 @@ def test_the_wind_blows_to_port_of_the_bow_and_the_joints_are_those_that_are_the
 def test_a_dive_is_pressure_and_an_echo_that_lacks_is_infinite(link):
     link.depth, link.depth_valid = 10.0, True
     depth = {"kind": "depth", "depth_noise": 0.03, "depth_instability": [0.04]}
-    found = MEASURED["pressure"](link, here(depth=depth))
+    found = MEASURED["pressure"].make(link, here(depth=depth))
     assert found["fluid_pressure"] == pytest.approx(101_325.0 + 98_066.5)
     assert math.sqrt(found["variance"]) == pytest.approx(9806.65 * 0.05)
     link.water_depth = 7.0
-    assert MEASURED["water_depth"](link, here())["range"] == math.inf
+    assert MEASURED["water_depth"].make(link, here())["range"] == math.inf
     link.water_depth_valid = True
-    assert MEASURED["water_depth"](link, here())["range"] == 7.0
+    assert MEASURED["water_depth"].make(link, here())["range"] == 7.0
     link.velocity_b = (1.0, 0.2, 0.1)
-    assert MEASURED["dvl"](link, here()) is None  # no bottom
+    assert MEASURED["dvl"].make(link, here()) is None  # no bottom
     link.velocity_b_valid = True
-    assert MEASURED["dvl"](link, here())["twist"]["twist"]["linear"] == (1.0, -0.2, -0.1)
+    assert MEASURED["dvl"].make(link, here())["twist"]["twist"]["linear"] == (1.0, -0.2, -0.1)
 
 
 def test_a_battery_that_discharges_has_a_negative_current(link):
     link.voltage, link.current, link.charge = 15.0, 4.0, 0.8
-    found = MEASURED["battery"](link, here())
+    found = MEASURED["battery"].make(link, here())
     assert (found["voltage"], found["current"], found["percentage"]) == (15.0, -4.0, 0.8)
     made = message("sensor_msgs/msg/BatteryState", found)
     assert math.isnan(made.capacity)
@@ -193,10 +198,10 @@ def test_a_battery_that_discharges_has_a_negative_current(link):
 def test_the_field_turns_with_the_heading_and_an_imu_without_attitude_says_so(link):
     link.heading = math.pi / 2  # east: north is to port
     north, east, down = here().field
-    field = MEASURED["compass"](link, here())["magnetic_field"]
+    field = MEASURED["compass"].make(link, here())["magnetic_field"]
     assert field == pytest.approx((east, north, -down))
     link.gyro = (0.1, 0.2, 0.3)
-    found = MEASURED["imu"](link, here())
+    found = MEASURED["imu"].make(link, here())
     assert found["angular_velocity"] == (0.1, -0.2, -0.3)
     assert found["orientation_covariance"][0] == -1.0
     assert found["linear_acceleration_covariance"][0] == -1.0

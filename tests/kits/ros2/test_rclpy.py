@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.command import seatrial
+from tests.command import seatrial, seatrial_process
 
 from .peer import LOOPBACK
 
@@ -95,7 +95,7 @@ def node(domain, tmp_path):
 
 def run(tmp_path, domain, out, *settings):
     given = (f"autopilot.ros2.domain={domain}", *settings)
-    done = seatrial(
+    done = seatrial_process(
         *("run", "otter-course-square", "--autopilot", "ros2", "--engine", "direct", "--out", out),
         *(each for setting in given for each in ("--set", setting)),
         cwd=tmp_path,

@@ -1,7 +1,7 @@
 """The Otter sailed by a node of somebody else, in a process of its own."""
 
 from seatrial import Simulation
-from tests.command import seatrial
+from tests.command import seatrial_process
 
 LEGS = {
     "autopilot.course.count": 2,
@@ -27,7 +27,7 @@ def test_a_helmsman_rounds_a_corner_by_velocities_and_twice_with_the_same_bytes(
     settings = {"autopilot.ros2.domain": domain, **SLOW, "autopilot.ros2.lockstep": "stamped"}
     written = [f"{key}={value}" for key, value in settings.items()]
     for name in ("first", "second"):
-        done = seatrial(
+        done = seatrial_process(
             *(
                 "run",
                 "under-way",

@@ -3,7 +3,7 @@
 import pytest
 
 from seatrial.errors import InputError
-from tests.command import seatrial
+from tests.command import seatrial, seatrial_process
 
 
 @pytest.fixture
@@ -51,11 +51,12 @@ def test_topics_that_are_not_there_are_named(otter):
 
 
 def test_a_bag_has_what_a_recorder_would_have(tmp_path, domain):
-    """Read by mcap-ros2-support, which knows nothing of rosbags."""
-    from mcap_ros2.reader import read_ros2_messages
+    """Written by the link as an FMU, read by mcap-ros2-support, which knows nothing of rosbags."""
+    from mcap.reader import make_reader
+    from mcap_ros2.decoder import DecoderFactory
 
-    done = seatrial(
-        *("run", "under-way", "--vehicle", "otter", "--autopilot", "ros2", "--engine", "direct"),
+    done = seatrial_process(
+        *("run", "under-way", "--vehicle", "otter", "--autopilot", "ros2", "--engine", "fmu"),
         *("--set", "stop=0.5 s", "--set", "autopilot.ros2.bag=on", "--out", "run"),
         *("--set", f"autopilot.ros2.domain={domain}"),
         cwd=tmp_path,
@@ -63,10 +64,25 @@ def test_a_bag_has_what_a_recorder_would_have(tmp_path, domain):
     assert done.returncode in (0, 1), done.stderr
     (file,) = (tmp_path / "run/autopilot.ros2").glob("*.mcap")
     found = {}
-    for each in read_ros2_messages(str(file)):
-        found.setdefault(each.channel.topic, []).append(each.ros_msg)
+    with file.open("rb") as opened:
+        reader = make_reader(opened, decoder_factories=[DecoderFactory()])
+        for _, channel, _, content in reader.iter_decoded_messages():
+            found.setdefault(channel.topic, []).append(content)
     assert len(found["/clock"]) == 50
     assert len(found["/otter/imu/data"]) == 50
     assert len(found["/otter/odometry/ground_truth"]) == 25
     assert found["/otter/leg"][0].poses[1].pose.position.x == 5000.0
     assert found["/otter/imu/data"][7].header.stamp.nanosec == 70_000_000
+
+
+def test_a_run_forked_from_a_process_that_speaks_dds_says_so(tmp_path, domain, otter):
+    """The tests' command runs in this process, and the run in a fork of it: it would hang."""
+    otter.ros2("autopilot.ros2")
+    settings = ("--set", f"autopilot.ros2.domain={domain}", "--set", "stop=1 s")
+    done = seatrial(
+        *("run", "under-way", "--vehicle", "otter", "--autopilot", "ros2", "--engine", "direct"),
+        *settings,
+        cwd=tmp_path,
+    )
+    assert done.returncode == 2
+    assert "forked from one that speaks DDS" in done.stderr

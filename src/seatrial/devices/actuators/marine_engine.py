@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import ClassVar
 
+from ...errors import InputError, unknown
 from ...model.component import Input, Output, Parameter
 from .actuator import Actuator
 
@@ -42,6 +43,8 @@ class MarineEngine(Actuator):
 
     Failures are those of `Actuator`: no order arrives, and the engine stops; half of M is left; it
     loads ten times as slowly.
+
+    Raises InputError in a step for another order of the telegraph.
 
     Not modelled: fuel, scavenging air and turbocharger, starting air that is used up, gears that
     slip, torsion of the shaft.
@@ -102,7 +105,9 @@ class MarineEngine(Actuator):
         self.power = self._torque * self._speed
 
     def _ordered(self) -> float:
-        """Return the share of n_r that is ordered."""
+        """Return the share of n_r that is ordered. Raises InputError for an unknown one."""
+        if self.telegraph not in ORDERS:
+            raise InputError(f"{self.name}: {unknown('telegraph order', self.telegraph, ORDERS)}")
         if self.telegraph in (REMOTE, STOP):
             return float(self.command) if self.telegraph == REMOTE else 0.0
         step, _, side = self.telegraph.rpartition(" ")
@@ -127,7 +132,7 @@ class MarineEngine(Actuator):
         if order == 0.0 or ahead < -self.reversing_speed:
             return 0.0
         most = self._of(self.rated_torque, order)
-        share = self.torque_at_rest + (1.0 - self.torque_at_rest) * max(ahead, 0.0)
+        share: float = self.torque_at_rest + (1.0 - self.torque_at_rest) * max(ahead, 0.0)
         if self.load_time > 0.0:
             loaded = max(side * self._torque, 0.0) / most
             share = min(share, loaded + h / (self.slowness * self.load_time))
@@ -135,7 +140,7 @@ class MarineEngine(Actuator):
 
     def _share(self) -> float:
         """Return omega as a share of n_r."""
-        return self._speed / self._of(self.rated_speed, self._speed)
+        return float(self._speed / self._of(self.rated_speed, self._speed))
 
     def _of(self, values: tuple[float, float], side: float) -> float:
         """Return the value ahead, or that astern for a ``side`` below 0."""

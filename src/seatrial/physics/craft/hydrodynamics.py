@@ -30,6 +30,8 @@ from .slender import body_lift, fading_damping
 from .winged_body import winged_body
 
 Term = Callable[[Context], Any]
+_LEVEL = 1e-12
+"""Keeps the heel of a craft that stands on its bow finite."""
 
 
 def restoring(c: Context) -> Any:
@@ -46,6 +48,9 @@ def restoring(c: Context) -> Any:
       and has no moment about the vertical. With r_F, z is that of the point r_F, z + n . r_F,
       and the force acts there (Fossen, Handbook of Marine Craft Hydrodynamics and Motion
       Control, 2nd ed., 2021, has its first order).
+    - "surface-curve": as "surface-conservative", with the righting arm GZ(phi) of the sections to
+      capsize in the place of GM_T (`large_angles`): potential W GM_L n1^2 / 2 + W integral of GZ,
+      phi = atan2(n2, n3), its moment about x at level pitch -W GZ(phi).
     - "submerged": weight W n at the CG, buoyancy -B n at the centre of buoyancy: force
       (W - B) n, moment (r_G W - r_B B) x n (Fossen; source 000, eqs 3.25 to 3.28).
     - "floating": between the two, by eight cells (`hull_points.floating`).
@@ -69,8 +74,18 @@ def restoring(c: Context) -> Any:
         couple = ca.vertcat(-W * p.GM_T * ca.sin(phi), -W * p.GM_L * ca.sin(theta), 0)
     else:
         force = -k * (z + ca.dot(n, r_F)) * n
-        couple = ca.cross(n, ca.vertcat(W * p.GM_L * n[0], W * p.GM_T * n[1], 0))
+        across = ca.vertcat(W * p.GM_T * n[1], 0)
+        if p.restoring == "surface-curve":
+            across = W * _curve(n[1], n[2], p.righting_arm)
+        couple = ca.cross(n, ca.vertcat(W * p.GM_L * n[0], across))
     return ca.vertcat(force, couple + ca.cross(r_F, force))
+
+
+def _curve(n2: Any, n3: Any, sines: Any) -> Any:
+    """Return the gradient of the integral of GZ(phi) by n2 and n3, m."""
+    phi = ca.atan2(n2, n3)
+    arm = sum(a * ca.sin(k * phi) for k, a in enumerate(ca.vertsplit(sines), 1))
+    return arm / (n2**2 + n3**2 + _LEVEL) * ca.vertcat(n3, -n2)
 
 
 def coriolis(c: Context) -> Any:

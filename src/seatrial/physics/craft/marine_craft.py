@@ -10,12 +10,14 @@ import casadi as ca
 
 from ...errors import InputError
 from ...model.component import Parameter
+from ...model.expressions import Vector
 from ...model.plant import State
 from ...model.ports import Output
 from ...model.terminals import MOTION
 from ..sea.loads import Response
 from ..sea.winds import WindState
 from .hydrodynamics import WAVES, WIND
+from .large_angles import HARMONICS, righting_arms, sine_series
 from .seaway import WindySeaway
 from .six_dof import LOADS, SixDofCraft, six_dof_motion
 from .wave_hull import HullCoefficients
@@ -51,11 +53,18 @@ class MarineCraft(WindySeaway, SixDofCraft):
         "surface-conservative",
         "1",
         "form of the restoring forces",
-        choices=("surface-linear", "surface-conservative", "submerged", "floating"),
+        choices=(
+            *("surface-linear", "surface-conservative", "surface-curve"),
+            *("submerged", "floating"),
+        ),
     )
     density = Parameter(1025.0, "kg/m3", "density of the water", min=0.0)
     waterplane_area = Parameter(0.0, "m2", "waterplane area (surface)", min=0.0)
     GM_T = Parameter(0.0, "m", "transverse metacentric height (surface)")
+    righting_arm = Parameter(
+        0.0, "m", "a_k of GZ = sum a_k sin(k phi) (surface-curve); all 0: of the sections",
+        axes=[f"a{k}" for k in range(1, HARMONICS + 1)],
+    )  # fmt: skip
     GM_L = Parameter(0.0, "m", "longitudinal metacentric height (surface)")
     center_of_flotation = Parameter(
         0.0, "m", "centroid of the waterplane from the body origin, body axes (surface)", axes="xy"
@@ -83,6 +92,17 @@ class MarineCraft(WindySeaway, SixDofCraft):
 
     terminals: ClassVar = {**SixDofCraft.terminals, "motion": MOTION}
     feedthrough: ClassVar = {**SixDofCraft.feedthrough, "acceleration": (*LOADS, "current")}
+
+    def start(self, t: float) -> None:
+        """Find the righting arm of a craft that has its curve; raises InputError as `slices`."""
+        if self.restoring == "surface-curve" and not any(self.righting_arm):
+            arms = sine_series(self.slices(), self.mass / self.density, self.GM_T)
+            self.set("righting_arm", arms.tolist())
+        super().start(t)
+
+    def righting_arms(self, phi: Vector) -> Vector:
+        """Return GZ, m, at angles of heel, rad. Raises InputError as `slices`."""
+        return righting_arms(self.slices(), self.mass / self.density, self.GM_T, phi)
 
     def wave_response(self) -> Response | None:
         """Return the loads of the waves by strips, of a surface form of restoring, else None."""

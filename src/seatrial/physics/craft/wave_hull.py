@@ -14,6 +14,7 @@ from ...model.expressions import Vector
 from ..sea.loads import Drift
 from ..sea.numbers import Array, Complex, Numbers
 from ..sea.strips import Strips
+from .large_angles import Slice, outline
 
 STATIONS = 11
 _STRIPS = 20
@@ -52,6 +53,10 @@ class WaveHull(Component):
     )
     hull_middle = Parameter(0.0, "m", "middle of that length ahead of the body origin")
     hull_waterline = Parameter(0.0, "m", "water line above the body origin")
+    hull_freeboard = Parameter(
+        0.0, "m", "deck above the water line, of a hull that holds the water out; 0: not given",
+        min=0.0,
+    )  # fmt: skip
     hull_spacing = Parameter(
         0.0, "m", "between the centre planes of two hulls alike; 0: one hull", min=0.0
     )
@@ -79,6 +84,24 @@ class WaveHull(Component):
     drift_beam = Parameter(
         0.0, "N/m2", "mean force along beam seas, per amplitude squared", axes=_DRIFT_AXES
     )
+
+    def slices(self) -> list[Slice]:
+        """Return all hulls by slices with their decks, for `large_angles`.
+
+        Raises InputError for a hull that is not given, and one without ``hull_freeboard``.
+        """
+        if not self.hull_freeboard > 0.0:
+            raise InputError(
+                f"{self.name}: its righting arm at large angles needs the height of its deck: "
+                "hull_freeboard"
+            )
+        return [
+            Slice(outline(b, T, S, self.hull_freeboard, y), body.dx)
+            for body in self._bodies("it has a righting arm at large angles")
+            for y in body.hulls
+            for b, T, S in zip(body.beam, body.draught, body.area, strict=True)
+            if min(b, T, S) > 0.0
+        ]
 
     def drift(self) -> Drift | None:
         """Return the mean drift forces of the table, linear in frequency; None without one.
@@ -115,18 +138,7 @@ class WaveHull(Component):
         ``waterplane`` is that of the craft's restoring, m2, if it has one. Raises InputError for
         a hull that is not given, or whose waterplane is another.
         """
-        if not self.hull_length > 0.0:
-            raise InputError(
-                f"{self.name}: it meets waves, and its hull is not given: hull_length, "
-                "section_beam, section_draught and section_area"
-            )
-        bodies = [self._sections("section", self.hull_length, self.hull_middle, self.hull_spacing)]
-        if self.side_spacing > 0.0:
-            if not self.side_length > 0.0:
-                raise InputError(f"{self.name}: side_spacing is given, and side_length is 0")
-            bodies.append(
-                self._sections("side", self.side_length, self.side_middle, self.side_spacing)
-            )
+        bodies = self._bodies("it meets waves")
         plane = sum(body.plane for body in bodies)
         if waterplane is not None and not abs(plane - waterplane) <= _LARGEST_ERROR * waterplane:
             raise InputError(
@@ -137,6 +149,22 @@ class WaveHull(Component):
         shares = _Shares(own, bodies)
         form = {"round": self.section_form == "arc", "density": density, "gravity": gravity}
         return HullInWaves([shares.in_waves(body, self.hull_waterline, form) for body in bodies])
+
+    def _bodies(self, why: str) -> list[_Sections]:
+        """Return the hulls, one or two alike, then a pair at the sides. Raises InputError."""
+        if not self.hull_length > 0.0:
+            raise InputError(
+                f"{self.name}: {why}, and its hull is not given: hull_length, "
+                "section_beam, section_draught and section_area"
+            )
+        bodies = [self._sections("section", self.hull_length, self.hull_middle, self.hull_spacing)]
+        if self.side_spacing > 0.0:
+            if not self.side_length > 0.0:
+                raise InputError(f"{self.name}: side_spacing is given, and side_length is 0")
+            bodies.append(
+                self._sections("side", self.side_length, self.side_middle, self.side_spacing)
+            )
+        return bodies
 
     def _sections(self, prefix: str, length: float, middle: float, spacing: float) -> _Sections:
         """Return the strips of one hull or two alike. Raises InputError for sections of 0."""

@@ -59,7 +59,7 @@ def memories(omega: Array, added: Array, damping: Array, infinite: Array) -> lis
     hull without a centre plane, or of A, B and A_inf that do not belong together, so that more
     than a fifth of some motion's K is missed.
     """
-    wanted = damping + 1j * omega[:, None, None] * (added - infinite)
+    wanted: Complex = damping + 1j * omega[:, None, None] * (added - infinite)
     wanted = 0.5 * (wanted + wanted.transpose(0, 2, 1))
     own = np.abs(np.diagonal(wanted, axis1=1, axis2=2))
     _require_centre_plane(wanted, own)
@@ -72,6 +72,7 @@ def memories(omega: Array, added: Array, damping: Array, infinite: Array) -> lis
 
 
 def _require_centre_plane(wanted: Complex, own: Array) -> None:
+    """Raise InputError if the motions of one group push the hull in the other's."""
     size = _lasting(np.sqrt(own.max(0)))
     across = wanted[:, GROUPS[0]][:, :, GROUPS[1]] / np.outer(
         size[[*GROUPS[0]]], size[[*GROUPS[1]]]

@@ -15,6 +15,7 @@ from ...system.fault_entry import FaultEntry
 from ...system.files import FileModel, Source, find_file, read_toml, validated
 from ..files.map_entry import MapEntry
 from ..files.trial import Trial, is_choice, load_trial
+from .acceptance import Acceptance, AcceptanceEntry, read_acceptance
 from .case_list import FAULTS, Block, Cases
 from .designs import Design, drawn
 from .questions import Questions
@@ -56,6 +57,8 @@ class CampaignFile(FileModel):
     """Signals of which the table has the least, the greatest and the last value."""
     keep: Literal["all", "failed", "none"] | None = None
     """Whose run folders stay beside a table of all cases; None: all, without a table."""
+    criteria: list[AcceptanceEntry] = Field(default_factory=list)
+    """What all cases together must show; the campaign leaves a table then."""
     samples: int = Field(default=0, ge=0)
     """With ``keep``: one case in so many keeps its folder whatever becomes of it."""
     until: StoppingRule | None = None
@@ -85,7 +88,24 @@ class Campaign:
     @property
     def has_table(self) -> bool:
         """Whether it leaves a table by what its file says."""
-        return self.file.keep is not None or self.file.until is not None
+        file = self.file
+        return file.keep is not None or file.until is not None or bool(file.criteria)
+
+    @property
+    def acceptance(self) -> list[Acceptance]:
+        """What the cases together must show. Raises InputError for what cannot be asked."""
+        where = str(self.read_from.path)
+        return [read_acceptance(entry, where) for entry in self.file.criteria]
+
+    def is_enough(self, failed: int, count: int) -> bool:
+        """Say if the first ``count`` cases, of which some have ``failed``, end the campaign."""
+        rule = self.file.until
+        if rule is None or not rule.decided:
+            return rule is not None and rule.met(failed, count)
+        return count >= rule.least and all(
+            each.of_failures(failed, count, at_any_case=True) != "undecided"
+            for each in self.acceptance
+        )
 
     def cases(self) -> Cases:
         """Return all cases, in the order of the file. Raises InputError."""
@@ -136,6 +156,7 @@ def load_campaign(name: str, changes: Mapping[str, Any] | None = None) -> Campai
     path = find_file("harness/campaigns", name)
     content, read_from = read_toml(path)
     file = _with(validated(CampaignFile, content, path), changes or {}, path)
+    _check_criteria(file, path)
     if file.page is not None:
         _named(PAGES.target, file.page, f"{path}: page")
     chosen = {key: value for key, value in (changes or {}).items() if is_choice(key)}
@@ -162,6 +183,21 @@ def _with(file: CampaignFile, changes: Mapping[str, Any], path: Path) -> Campaig
             entry = entry.model_copy(update={"set": own})
         entries.append(entry)
     return file.model_copy(update={"trials": entries, "set": {**file.set, **changes}})
+
+
+def _check_criteria(file: CampaignFile, path: Path) -> None:
+    criteria = [read_acceptance(entry, str(path)) for entry in file.criteria]
+    if file.criteria and file.page is not None:
+        raise InputError(f"{path}: criteria leave a table, and this campaign makes a page of all")
+    if file.until is None or not file.until.decided:
+        return
+    others = [each.name for each in criteria if not each.is_of_failure]
+    if others or not criteria:
+        said = f"{others[0]!r} is of something else" if others else "there are none"
+        raise InputError(
+            f"{path}: until: decided needs criteria of the probability of failure or success of "
+            f"cases, and {said}"
+        )
 
 
 def _named(look_up: Callable[[str], Any], name: str, where: str) -> Any:

@@ -16,7 +16,10 @@ from ...model.units import conversion
 from ...system.files import FileModel
 
 Written = str | float | int
-_FORMS = ("normal", "uniform", "lognormal", "triangular", "integers", "levels", "spaced")
+_CONTINUOUS = (
+    "normal", "uniform", "lognormal", "triangular", "weibull", "rayleigh", "exponential"
+)  # fmt: skip
+_FORMS = (*_CONTINUOUS, "integers", "levels", "spaced")
 _DIGITS = 12
 """Of a level between two others: 0.3, not 0.30000000000000004."""
 _PARTS = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(\S.*?)?\s*$")
@@ -29,8 +32,13 @@ class Distribution(FileModel):
     uniform: list[Written] | None = Field(default=None, min_length=2, max_length=2)
     lognormal: list[Written] | None = Field(default=None, min_length=2, max_length=2)
     triangular: list[Written] | None = Field(default=None, min_length=3, max_length=3)
+    weibull: list[Written] | None = Field(default=None, min_length=2, max_length=2)
+    rayleigh: Written | None = None
+    exponential: Written | None = None
     integers: list[int] | None = Field(default=None, min_length=2, max_length=2)
     levels: list[Any] | None = Field(default=None, min_length=1)
+    weights: list[float] | None = None
+    """How often each of ``levels`` is drawn, in proportion; all alike without."""
     spaced: list[Written] | None = Field(default=None, min_length=3, max_length=3)
     between: list[Written] | None = Field(default=None, min_length=2, max_length=2)
 
@@ -64,21 +72,26 @@ def read_distribution(entry: Distribution, origin: str) -> Law:
     """Return the distribution that a file says.
 
     normal: mean, standard deviation; lognormal: those of the quantity itself, not of its logarithm;
-    uniform: low, high; triangular: low, mode, high; integers: first, last, all alike; levels and
-    spaced: as `levels_of` returns them, all alike. ``between`` cuts off what is outside of a
+    uniform: low, high; triangular: low, mode, high; weibull: scale, shape; rayleigh and
+    exponential: mean; integers: first, last, all alike; levels and spaced: as `levels_of` returns
+    them, all alike or by ``weights``. ``between`` cuts off what is outside of a
     continuous one. Settings are text in the unit that the first number has, or numbers if none has
     a unit. Raises InputError.
     """
     form = _form(entry, origin)
     here = f"{origin}: {form}"
     written = getattr(entry, form)
-    if form in ("integers", "levels", "spaced"):
-        return _one_of(levels_of(entry, origin))
-    numbers, unit = _numbers([*written, *(entry.between or [])], form == "normal", here)
-    law = _law(form, numbers[: len(written)], here)
+    if entry.weights is not None and form != "levels":
+        raise InputError(f"{origin}: weights: they go with levels, not with {form}")
+    if form not in _CONTINUOUS:
+        return _one_of(levels_of(entry, origin), entry.weights, f"{origin}: weights")
+    written = written if isinstance(written, list) else [written]
+    own, shape = (written[:1], written[1:]) if form == "weibull" else (written, [])
+    numbers, unit = _numbers([*own, *(entry.between or [])], form == "normal", here)
+    law = _law(form, [*numbers[: len(own)], *_numbers(shape or [1], False, here)[0]], here)
     low, high = 0.0, 1.0
     if entry.between:
-        first, last = numbers[len(written) :]
+        first, last = numbers[len(own) :]
         low, high = float(law.cdf(first)), float(law.cdf(last))
         if not high > low:
             raise InputError(f"{origin}: between: nothing of it lies there, found {entry.between}")
@@ -123,9 +136,15 @@ def number_and_unit(text: str) -> tuple[float, str | None]:
     return (math.nan, None) if part is None else (float(part[1]), part[2] or "")
 
 
-def _one_of(levels: Sequence[Any]) -> Law:
+def _one_of(levels: Sequence[Any], weights: list[float] | None, where: str) -> Law:
     first, last = (levels[0], levels[-1]) if isinstance(levels, range) else (0, len(levels) - 1)
     named = () if isinstance(levels, range) else levels
+    if weights is not None:
+        is_right = len(weights) == len(levels) and sum(weights) > 0.0
+        is_right &= all(weight >= 0.0 and math.isfinite(weight) for weight in weights)
+        _needed(is_right, f"{len(levels)} numbers from 0 on, not all 0,", where, weights)
+        ends = np.cumsum(weights) / sum(weights)
+        return Law(lambda p: np.searchsorted(ends[:-1], p, side="right"), "", True, named)
     return Law(lambda p: first + np.floor(p * (last - first + 1)), "", True, named)
 
 
@@ -172,6 +191,14 @@ def _law(form: str, numbers: list[float], here: str) -> Any:
         high = numbers[2]
         _needed(a <= b <= high and a < high, "low, mode, high in that order", here, numbers)
         return stats.triang((b - a) / (high - a), a, high - a)
+    if form in ("weibull", "rayleigh", "exponential"):
+        _needed(a > 0.0 and b > 0.0, "positive numbers", here, numbers)
+        laws = {
+            "weibull": stats.weibull_min(b, scale=a),
+            "rayleigh": stats.rayleigh(scale=a * math.sqrt(2.0 / math.pi)),
+            "exponential": stats.expon(scale=a),
+        }
+        return laws[form]
     _needed(b > 0.0, "a positive standard deviation", here, numbers)
     if form == "normal":
         return stats.norm(a, b)

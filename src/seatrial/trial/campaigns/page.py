@@ -103,6 +103,7 @@ def write_table_page(folder: Path) -> Path:
         planned=index.get("count", found.count),
         failed=failed,
         interval=failure_interval(failed, found.count) if found.count else (0.0, 1.0),
+        accepted=index.get("criteria", []),
         criteria=criteria,
         settings=settings,
         units=units,

@@ -1,10 +1,10 @@
-"""End of a campaign: once an interval of the probability of failure is narrow enough."""
+"""End of a campaign: once an interval is narrow enough, or its criteria are decided."""
 
 from __future__ import annotations
 
 from typing import Literal
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from ...system.files import FileModel
 
@@ -15,15 +15,24 @@ _LOOKED_EVERY = 50
 class StoppingRule(FileModel):
     """Until when a campaign draws cases, at most those of its design."""
 
-    half_width: float = Field(gt=0.0, lt=0.5)
+    half_width: float | None = Field(default=None, gt=0.0, lt=0.5)
     """Of the interval of the probability of failure."""
+    decided: bool = False
+    """Whether it ends where all criteria of the campaign are decided, instead."""
     confidence: float = Field(default=0.95, gt=0.0, lt=1.0)
     interval: Literal["wilson", "clopper-pearson"] = "wilson"
     least: int = Field(default=100, gt=0)
     """Cases before the first look."""
 
+    @model_validator(mode="after")
+    def _one(self) -> StoppingRule:
+        if (self.half_width is None) != self.decided:
+            raise ValueError("either half_width = NUMBER or decided = true is needed")
+        return self
+
     def met(self, failed: int, count: int) -> bool:
-        """Say if the first ``count`` cases, of which some have ``failed``, are enough."""
+        """Say if the first ``count`` cases, of which some have ``failed``, are narrow enough."""
+        assert self.half_width is not None
         if count < self.least or count % _LOOKED_EVERY:
             return False
         low, high = failure_interval(failed, count, self.confidence, self.interval)

@@ -23,6 +23,7 @@ from ..running.hooks import Hooks
 from ..running.measuring import Measured
 from ..running.output import claim_folder, write_json
 from ..running.resuming import Note, cut_aside, has_index, set_aside
+from .acceptance import Accepted, accepted
 from .asked import Asked
 from .campaign import INDEX, Campaign
 from .case_list import Cases
@@ -35,7 +36,6 @@ from .evaluator import Keep, Plan
 from .identity import IDENTITY, Changes, Identity, changes_since, identity_of
 from .sampled_checks import check
 from .shipment import unpack_folder
-from .stopping_rule import StoppingRule
 from .table import RESULTS, Tables, arrow, read_rows
 from .workers import Here, Task, Workers
 
@@ -90,6 +90,8 @@ class Summary:
     """The campaign's stopping rule was met before all cases had run."""
     kept: list[dict[str, Any]] = field(default_factory=list)
     """Entries of the cases whose folders stay, for the index."""
+    accepted: list[Accepted] = field(default_factory=list)
+    """What became of the campaign's own criteria."""
 
     @property
     def whole(self) -> bool:
@@ -134,7 +136,7 @@ def run_sweep(
         changes = changes_of(left / INDEX, index, identity, how, hooks.note)
         if not changes and (left / RESULTS).is_file() and not (left / ENDED_LOG).is_file():
             try:
-                return _summary(left, len(cases))
+                return _summary(left, len(cases), campaign)
             except InputError as error:
                 cut_aside(left / RESULTS, error, hooks.note)
         kept = without_touched(ended_cases(left, len(cases), hooks.note), cases, changes, left)
@@ -143,11 +145,13 @@ def run_sweep(
     with closing(workers_of(campaign, cases, plan, how, hooks)) as workers:
         folder = left or claim_folder(out, campaign.read_from.name, INDEX)
         write_json(folder / INDEX, {**index, "cases": []}, synced=True)
-        sweep = Sweep(cases, workers, folder, hooks, file.until)
+        sweep = Sweep(cases, workers, folder, hooks, campaign.is_enough)
         with EndedLog(folder) as log, Tables(folder, columns) as tables:
             sweep.run(log, tables, kept, done)
     summary = sweep.summary
-    write_json(folder / INDEX, {**index, "cases": summary.kept}, synced=True)
+    summary.accepted = _accepted(campaign, folder)
+    said = {"criteria": [each.content() for each in summary.accepted]}
+    write_json(folder / INDEX, {**index, **said, "cases": summary.kept}, synced=True)
     if summary.whole:
         log.path.unlink()
     return summary
@@ -175,9 +179,9 @@ class Sweep:
         workers: Workers,
         folder: Path,
         hooks: Hooks,
-        rule: StoppingRule | None = None,
+        is_enough: Callable[[int, int], bool] = lambda _failed, _count: False,
     ) -> None:
-        self._cases, self._rule = cases, rule
+        self._cases, self._ends = cases, is_enough
         self._workers, self._folder, self._hooks = workers, folder, hooks
         self._running: dict[Future[list[Ended | None]], Task] = {}
         self._again: deque[Task] = deque()
@@ -203,7 +207,7 @@ class Sweep:
         while True:
             while not self.summary.enough and self.summary.ended in self._early:
                 hand_on(self.summary.ended)
-                self.summary.enough = self._is_enough()
+                self.summary.enough = self._ends(self.summary.failed, self.summary.ended)
             self._stopping |= self.summary.enough or self._hooks.stop_requested() > 0
             self._submit(numbers)
             if not self._running:
@@ -218,10 +222,6 @@ class Sweep:
                 hand_on(number)
 
     # ------------------------------------------------------------------ inside
-
-    def _is_enough(self) -> bool:
-        summary = self.summary
-        return self._rule is not None and self._rule.met(summary.failed, summary.ended)
 
     def _submit(self, numbers: Iterator[int]) -> None:
         """Begin tasks for all places; once it is to stop, cancel what has not begun."""
@@ -268,7 +268,7 @@ def index_of(
     campaign: Campaign, identity: Identity, engine: Engine, count: int, question: Any = None
 ) -> dict[str, Any]:
     """Return the index of a campaign's folder, or of a question's, without its cases."""
-    file = campaign.file.model_dump(exclude={"title", "keep", "samples", "ask", "map"})
+    file = campaign.file.model_dump(exclude={"title", "keep", "samples", "ask", "map", "criteria"})
     asked = [] if question is None else [question]
     said = json.dumps([engine, file, *asked], default=str)
     drawn = campaign.file.map if question is None else None
@@ -324,7 +324,15 @@ def without_touched(
     return {n: ended for n, ended in kept.items() if n not in touched}
 
 
-def _summary(folder: Path, planned: int) -> Summary:
+def _accepted(campaign: Campaign, folder: Path) -> list[Accepted]:
+    """Return what becomes of a campaign's own criteria on the table in its folder."""
+    until = campaign.file.until
+    rows = list(read_rows(folder / RESULTS)) if campaign.file.criteria else []
+    is_sequential = until is not None and until.decided
+    return accepted(campaign.acceptance, rows, at_any_case=is_sequential)
+
+
+def _summary(folder: Path, planned: int, campaign: Campaign) -> Summary:
     """Return the summary of a folder whose campaign has come to its end."""
     summary = Summary(folder, planned)
     for row in read_rows(folder / RESULTS, ["passed", "status"]):
@@ -332,6 +340,7 @@ def _summary(folder: Path, planned: int) -> Summary:
         summary.failed += not row["passed"]
         summary.broken += row["status"] == "failed"
     summary.enough = summary.ended < planned
+    summary.accepted = _accepted(campaign, folder)
     return summary
 
 

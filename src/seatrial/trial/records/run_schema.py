@@ -267,6 +267,13 @@ class _Identity(_Entry):
     files: dict[str, dict[str, str]]
 
 
+class _Accepted(_Entry):
+    name: str
+    check: str
+    verdict: Literal["pass", "fail", "undecided"]
+    detail: str
+
+
 class _Campaign(_Entry):
     name: str
     file: str | None = None
@@ -279,6 +286,7 @@ class _Campaign(_Entry):
     left_out: dict[str, str] = Field(default_factory=dict)
     map: MapEntry | None = None
     identity: _Identity | None = None
+    criteria: list[_Accepted] = Field(default_factory=list)
 
 
 class _Closed(BaseModel):

@@ -13,6 +13,7 @@ from ...system.system import Engine
 from ..criteria.verdict import Verdict
 from ..files.trial import Trial
 from ..records.ending import is_whole
+from .generators import own_generators
 from .hooks import Hooks
 from .preparation import Prepared, prepare
 from .run import Result
@@ -58,7 +59,8 @@ def measure_trial(trial: Trial, *, engine: Engine = "fmu", hooks: Hooks | None =
     with hooks.interruptible():
         prepared = prepare(trial, engine, hooks)
     try:
-        found = _stepped(prepared, hooks)
+        with own_generators(prepared.system.seed):
+            found = _stepped(prepared, hooks)
     except BaseException:
         with contextlib.suppress(KeyboardInterrupt), hooks.interruptible():
             prepared.system.discard()

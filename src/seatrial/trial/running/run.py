@@ -16,6 +16,7 @@ from ...system.system import Engine, System
 from ..criteria.verdict import Verdict
 from ..files.trial import Trial
 from ..records.ending import is_whole
+from .generators import own_generators
 from .hooks import Hooks, StoppedError
 from .output import claim_folder
 from .preparation import prepare
@@ -65,24 +66,25 @@ def run_trial(
     here = Path.cwd()  # a component may change it
     with hooks.interruptible(), _timed(wall, "assemble"):
         prepared = prepare(trial, engine, hooks)
-    try:
-        hooks.assembled(prepared.system, prepared.manifest)
-        with hooks.interruptible(), _timed(wall, "initialise"):
-            master = prepared.started()
-        hooks.refuse_if_stopped()
-        folder = claim_folder(out, trial.name, "manifest.json", here)
-        hooks.claimed(folder)
-        _copy_meshes(prepared.system, folder)
-        _set_run_folder(master, folder)
-        run = Run(prepared, master, folder, hooks, wall)
-        if trial.file.real_time is not None:
-            _report_addresses(master, hooks)
-        run.simulate()
-    except BaseException:
-        with contextlib.suppress(KeyboardInterrupt), hooks.interruptible():
-            prepared.system.discard()
-        raise
-    run.release()
+    with own_generators(prepared.system.seed):
+        try:
+            hooks.assembled(prepared.system, prepared.manifest)
+            with hooks.interruptible(), _timed(wall, "initialise"):
+                master = prepared.started()
+            hooks.refuse_if_stopped()
+            folder = claim_folder(out, trial.name, "manifest.json", here)
+            hooks.claimed(folder)
+            _copy_meshes(prepared.system, folder)
+            _set_run_folder(master, folder)
+            run = Run(prepared, master, folder, hooks, wall)
+            if trial.file.real_time is not None:
+                _report_addresses(master, hooks)
+            run.simulate()
+        except BaseException:
+            with contextlib.suppress(KeyboardInterrupt), hooks.interruptible():
+                prepared.system.discard()
+            raise
+        run.release()
     verdicts = [] if run.status in ("failed", "stopped") else run.evaluate()
     figures = [] if run.status in ("failed", "stopped") else run.stepping.figures()
     seed = prepared.system.seed

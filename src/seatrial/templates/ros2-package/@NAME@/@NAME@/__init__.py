@@ -1,0 +1,1 @@
+"""Nodes for a boat in seatrial."""
