@@ -95,10 +95,11 @@ def test_where_a_sphere_is(bearing):
 
 
 def test_tracks_of_what_was_seen():
-    tracks = watched([], [Sighting(30, 0, 30), Sighting(0, 50, 50)], 0.0, 5.0)
-    tracks = watched(tracks, [Sighting(31, 0, 31)], 1.0, 5.0)
+    tracks = watched([], [Sighting(30, -8, 31), Sighting(0, 50, 50)], 0.0, 5.0)
+    tracks = watched(tracks, [Sighting(31, -5, 31)], 1.0, 5.0)
     assert [track[3] for track in tracks] == [2, 1]
     assert 30 < tracks[0][0] < 31
+    assert tracks[0][1] + 8 == pytest.approx(3 * (tracks[0][0] - 30))
     assert len(watched(tracks, [], 5.5, 5.0)) == 1
     assert watched(tracks, [], 7.0, 5.0) == []
 

@@ -4,9 +4,10 @@ import math
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 from seatrial.errors import InputError
-from seatrial.physics.contact import restitution
+from seatrial.physics.contact import hunt_crossley, restitution
 from seatrial.physics.environment.collision import Collision, nearest_points
 
 M1, M2, I1, I2 = 55.0, 22.0, 20.0, 5.0  # kg, kg.m2
@@ -97,6 +98,16 @@ def test_neither_of_the_two_is_the_first(seed):
         found[order] = np.ravel(loads)
     one, other = found.values()
     assert np.abs(one).max() > 1.0
+    # Both go on by 1 us: the normal force knows how fast their hulls come together.
+    before, press = -collision.get("distance"), collision.get("normal_force")
+    for craft, place, euler, v, rates in zip(order, *list(poses.values())[:4], strict=True):
+        turned = Rotation.from_euler("ZYX", euler[::-1])
+        later = turned * Rotation.from_rotvec(1e-6 * rates)
+        collision.set(f"{craft}_position", place + 1e-6 * turned.apply(v))
+        collision.set(f"{craft}_attitude", later.as_euler("ZYX")[::-1])
+    closing = (-collision.get("distance") - before) / 1e-6
+    law = hunt_crossley(before, closing, collision.stiffness, collision.damping)
+    assert press == pytest.approx(law, rel=1e-4)
     np.testing.assert_allclose(one, other, rtol=1e-9, atol=1e-9)
 
 

@@ -16,6 +16,13 @@ def test_without_gusts_it_is_the_mean():
         assert (speed, direction) == (5.0, math.radians(30))
 
 
+def test_a_state_is_restored_elsewhere():
+    wind, other = started(Wind, wind_speed=7.0, wind_direction=2.0), Wind("other")
+    other.set_state(wind.get_state())
+    other.advance(0.0, 0.1)
+    assert other.get("velocity") == pytest.approx([7.0 * math.cos(2.0), 7.0 * math.sin(2.0)])
+
+
 def test_single_gust_is_a_full_cosine():
     gust = {"gust_size": 0.5, "gust_start": 2.0, "gust_duration": 4.0}
     wind = started(Wind, mean_speed=8.0, **gust)

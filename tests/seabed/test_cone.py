@@ -5,6 +5,7 @@ import math
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from scipy.spatial.transform import Rotation
 
 from seatrial.physics.seabed.cone import first_return
 from seatrial.physics.seabed.plane import Plane
@@ -14,13 +15,20 @@ from seatrial.physics.seabed.shapes import Sphere
 DOWN = (0.0, 0.0, 1.0)
 
 
-@given(st.floats(0.0, 0.6), st.floats(0.01, 0.5), st.floats(-3.0, 3.0))
-def test_on_a_slope_it_is_the_edge_or_the_perpendicular(slope, half_angle, falls_to):
-    hit = first_return(Scene(Plane(20.0, slope, falls_to)), (0.0, 0.0, 0.0), DOWN, half_angle, 99.0)
-    height = 20.0 * math.cos(slope)
-    expected = height / math.cos(max(0.0, slope - half_angle))
+LEAN = st.floats(-0.4, 0.4)
+
+
+@given(st.floats(0.0, 0.6), st.floats(0.01, 0.5), st.floats(-3.0, 3.0), LEAN, LEAN)
+def test_on_a_slope_it_is_the_edge_or_the_perpendicular(slope, half_angle, falls_to, roll, pitch):
+    axis = Rotation.from_euler("yx", [pitch, roll]).apply(DOWN)
+    scene = Scene(Plane(20.0, slope, falls_to))
+    hit = first_return(scene, (0.0, 0.0, 0.0), tuple(axis.tolist()), half_angle, 99.0)
+    fall = -math.sin(slope)
+    normal = (fall * math.cos(falls_to), fall * math.sin(falls_to), math.cos(slope))
+    between = math.acos(min(1.0, axis @ normal))
+    expected = 20.0 * math.cos(slope) / math.cos(max(0.0, between - half_angle))
     assert hit.distance == pytest.approx(expected, rel=1e-5)
-    assert hit.distance >= expected * (1.0 - 1e-12)
+    assert hit.distance >= expected * (1.0 - 1e-9)
 
 
 @given(st.floats(0.1, 0.5), st.floats(0.0, 6.0), st.floats(0.0, 1.0))
