@@ -64,10 +64,10 @@ def memories(omega: Array, added: Array, damping: Array, infinite: Array) -> lis
     own = np.abs(np.diagonal(wanted, axis1=1, axis2=2))
     _require_centre_plane(wanted, own)
     # A narrow peak gives its motion little weight: then all motions count by their mean.
-    for size in (own.max(0), 2.0 * np.sqrt(np.square(own).mean(0))):
-        found = _fitted_groups(omega, wanted, np.sqrt(size))
-        if all((memory.missed < _LARGEST_ERROR).all() for memory in found):
-            return found
+    sizes = [np.sqrt(own.max(0)), np.sqrt(2.0) * np.square(own).mean(0) ** 0.25]
+    found = [_nearest(omega, wanted, sizes, list(group)) for group in GROUPS]
+    if all((memory.missed < _LARGEST_ERROR).all() for memory in found):
+        return found
     raise InputError(_misses(found))
 
 
@@ -89,15 +89,14 @@ def _lasting(size: Array) -> Array:
     return np.where(size > 1e-6 * size.max(), size, np.inf)
 
 
-def _fitted_groups(omega: Array, wanted: Complex, size: Array) -> list[Memory]:
-    """Return the memory of each group, fitted to K over ``size`` of its motions, (6,)."""
-    found = []
-    for group in map(list, GROUPS):
+def _nearest(omega: Array, wanted: Complex, sizes: list[Array], group: list[int]) -> Memory:
+    """Return the memory of a group, fitted to K over the first of ``sizes`` that is near enough."""
+    for size in sizes:
         scale = _lasting(size)[group]
         memory = _fitted(omega, wanted[:, group][:, :, group] / np.outer(scale, scale))
-        back = np.where(np.isfinite(scale), scale, 0.0)
-        found.append(replace(memory, coupling=memory.coupling * back))
-    return found
+        if (memory.missed < _LARGEST_ERROR).all():
+            break
+    return replace(memory, coupling=memory.coupling * np.where(np.isfinite(scale), scale, 0.0))
 
 
 def _misses(found: list[Memory]) -> str:
