@@ -1,4 +1,4 @@
-"""What the profile's sensors say: periods, places, covariances by their own noise."""
+"""Sensors of the profile: periods, places, covariances by their own noise."""
 
 from __future__ import annotations
 

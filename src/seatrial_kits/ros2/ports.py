@@ -199,11 +199,11 @@ class Ros2Ports(Logging, Reachable, TrueMotion, Sampled):
 
     terminals: ClassVar = {
         "sensors": terminal(
-            *("position_n", "velocity_n", "position_valid", "heading", "heading_valid"),
-            *("roll_pitch", "gyro", "gyro_valid", "accelerometer", "imu_valid"),
-            *("depth", "depth_valid", "velocity_b", "velocity_b_valid"),
-            *("water_speed", "water_speed_valid", "water_depth", "water_depth_valid"),
-            *("wind_speed", "wind_angle", "wind_valid", "leaking", "water_temperature"),
+            "position_n", "velocity_n", "position_valid", "heading", "heading_valid",
+            "roll_pitch", "gyro", "gyro_valid", "accelerometer", "imu_valid",
+            "depth", "depth_valid", "velocity_b", "velocity_b_valid",
+            "water_speed", "water_speed_valid", "water_depth", "water_depth_valid",
+            "wind_speed", "wind_angle", "wind_valid", "leaking", "water_temperature",
             heel="roll_pitch__phi",
             pitch="roll_pitch__theta",
             rudder="joint__rudder",

@@ -1,4 +1,4 @@
-"""What other nodes do wrong: refused or counted, reported once, and never fatal."""
+"""Mistakes of other nodes: refused or counted, reported once, and never fatal."""
 
 import logging
 import math

@@ -96,7 +96,14 @@ def node(domain, tmp_path):
 def run(tmp_path, domain, out, *settings):
     given = (f"autopilot.ros2.domain={domain}", *settings)
     done = seatrial_process(
-        *("run", "otter-course-square", "--autopilot", "ros2", "--engine", "direct", "--out", out),
+        "run",
+        "otter-course-square",
+        "--autopilot",
+        "ros2",
+        "--engine",
+        "direct",
+        "--out",
+        out,
         *(each for setting in given for each in ("--set", setting)),
         cwd=tmp_path,
     )

@@ -28,18 +28,20 @@ def test_a_helmsman_rounds_a_corner_by_velocities_and_twice_with_the_same_bytes(
     written = [f"{key}={value}" for key, value in settings.items()]
     for name in ("first", "second"):
         done = seatrial_process(
-            *(
-                "run",
-                "under-way",
-                "--vehicle",
-                "otter",
-                "--autopilot",
-                "ros2",
-                "--engine",
-                "direct",
-            ),
-            *("--set", "stop=8 s", "--set", 'autopilot.course.waypoint_1=["4 m", "0 m", "0 m"]'),
-            *("--out", name),
+            "run",
+            "under-way",
+            "--vehicle",
+            "otter",
+            "--autopilot",
+            "ros2",
+            "--engine",
+            "direct",
+            "--set",
+            "stop=8 s",
+            "--set",
+            'autopilot.course.waypoint_1=["4 m", "0 m", "0 m"]',
+            "--out",
+            name,
             *(each for setting in written for each in ("--set", setting)),
             cwd=tmp_path,
         )

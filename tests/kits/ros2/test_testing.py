@@ -56,9 +56,22 @@ def test_a_bag_has_what_a_recorder_would_have(tmp_path, domain):
     from mcap_ros2.decoder import DecoderFactory
 
     done = seatrial_process(
-        *("run", "under-way", "--vehicle", "otter", "--autopilot", "ros2", "--engine", "fmu"),
-        *("--set", "stop=0.5 s", "--set", "autopilot.ros2.bag=on", "--out", "run"),
-        *("--set", f"autopilot.ros2.domain={domain}"),
+        "run",
+        "under-way",
+        "--vehicle",
+        "otter",
+        "--autopilot",
+        "ros2",
+        "--engine",
+        "fmu",
+        "--set",
+        "stop=0.5 s",
+        "--set",
+        "autopilot.ros2.bag=on",
+        "--out",
+        "run",
+        "--set",
+        f"autopilot.ros2.domain={domain}",
         cwd=tmp_path,
     )
     assert done.returncode in (0, 1), done.stderr
@@ -80,7 +93,14 @@ def test_a_run_forked_from_a_process_that_speaks_dds_says_so(tmp_path, domain, o
     otter.ros2("autopilot.ros2")
     settings = ("--set", f"autopilot.ros2.domain={domain}", "--set", "stop=1 s")
     done = seatrial(
-        *("run", "under-way", "--vehicle", "otter", "--autopilot", "ros2", "--engine", "direct"),
+        "run",
+        "under-way",
+        "--vehicle",
+        "otter",
+        "--autopilot",
+        "ros2",
+        "--engine",
+        "direct",
         *settings,
         cwd=tmp_path,
     )
