@@ -1,4 +1,4 @@
-"""Messages that the link writes: one function per topic, from the component's inputs to fields of messages.
+"""Messages that the link writes: one function per topic, from inputs to fields of messages.
 
 Each returns the message, None while the measurement is not valid. World axes are east-north-up,
 body axes ahead-left-up (`frames`).
