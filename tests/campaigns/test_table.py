@@ -19,6 +19,7 @@ from seatrial.trial.campaigns.stopping_rule import StoppingRule, failure_interva
 from seatrial.trial.campaigns.sweep import How, run_sweep
 from seatrial.trial.files.trial import load_trial
 from tests.cli.test_stop import SEATRIAL, wait_for
+from tests.command import seatrial as command
 from tests.kit import needs_kits
 
 GRID = (
@@ -129,6 +130,17 @@ def test_a_stopped_campaign_goes_on_to_the_same_table(written, tmp_path):
     assert not log.exists()
     again = run_sweep(campaign, tmp_path / "out", direct(resume=True))
     assert (again.ended, again.failed) == (8, 2)
+
+
+def test_a_case_that_hangs_is_a_failed_row_and_the_rest_goes_on(written, tmp_path):
+    written('keep = "none"\n[grid]\n"case.way" = ["run", "wait", "run"]\n"case.number" = ["1 m"]\n')
+    options = ("--engine", "direct", "--hang-after", "0.5", "--no-report", "--out", "out")
+    done = command("run", "campaign.toml", *options, cwd=tmp_path)
+    assert done.returncode == 3
+    assert "1 cases could not go on" in done.stderr
+    table = pd.read_parquet(tmp_path / "out/results.parquet")
+    assert list(table["status"]) == ["complete", "failed", "complete"]
+    assert "case: its step at t = 0.0 s hung: no progress for 0.5 s" in table["error"][1]
 
 
 def test_the_folder_of_another_campaign_is_refused(written, tmp_path):

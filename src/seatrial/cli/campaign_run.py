@@ -53,15 +53,15 @@ def run_cases(
     campaign = load_campaign(name, changes)
     print_notes([f"{trial} is left out: {why}" for trial, why in campaign.left_out.items()])
     if how.keep is not None or how.cluster is not None or campaign.has_table:
-        if how.hang_after is not None:
-            raise InputError("--hang-after works with a campaign whose every case leaves a folder")
+        if how.hang_after is not None and how.cluster is not None:
+            raise InputError("--hang-after works with cases that run on this machine")
         if campaign.file.page is not None:
             raise InputError(
                 "--keep and --cluster leave a table: this campaign makes a page of all"
             )
         keep = keep_named(how.keep, "--keep")
         sweep = SweepHow(how.engine, how.jobs, how.cluster, keep, how.resume, how.rerun_changed)
-        run_table(campaign, out, sweep, junit=leaves.junit, report=leaves.report)
+        run_table(campaign, out, sweep, how.hang_after, junit=leaves.junit, report=leaves.report)
     else:
         _run_folders(campaign, out, how, leaves)
 

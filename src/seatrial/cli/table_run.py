@@ -26,7 +26,13 @@ _SAID = 20
 
 
 def run_table(
-    campaign: Campaign, out: Path | None, how: How, *, junit: Path | None, report: bool
+    campaign: Campaign,
+    out: Path | None,
+    how: How,
+    hang_after: float | None,
+    *,
+    junit: Path | None,
+    report: bool,
 ) -> None:
     """Run a campaign into its table, and say what came of it."""
     if junit is not None:
@@ -49,6 +55,7 @@ def run_table(
             stop_requested=stop.requested,
             interruptible=stop.interruptible,
             note=lambda text: print_notes([text]),
+            hang_after=hang_after,
         )
         summary = run_sweep(campaign, out, how, hooks, done)
     page = write_table_page(summary.folder) if report else None

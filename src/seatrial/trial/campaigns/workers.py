@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 from collections.abc import Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
-from dataclasses import replace
 from pathlib import Path
 from queue import SimpleQueue
 from typing import Protocol
@@ -55,7 +54,7 @@ class Here:
         def asked() -> int:
             return 2 if self._closing else hooks.stop_requested()
 
-        own = replace(Hooks(), stop_requested=asked)
+        own = Hooks(stop_requested=asked, hang_after=hooks.hang_after)
         self._evaluators = [Evaluator(cases, plan, own) for _ in range(count)]
         self._idle: SimpleQueue[Evaluator] = SimpleQueue()
         for evaluator in self._evaluators:
