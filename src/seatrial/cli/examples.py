@@ -21,6 +21,7 @@ _CORE = {
     "move-vehicle": "seatrial move-vehicle my-boat",
     "new": "seatrial new vehicle my-boat",
     "new ardupilot": "seatrial new ardupilot my-boat",
+    "new ros2-package": "seatrial new ros2-package my_boat",
     "new sketch-of": "seatrial new sketch-of my-boat",
     "new trials": "seatrial new trials my-boat",
     "new vehicle": "seatrial new vehicle my-boat --like auv",

@@ -112,7 +112,7 @@ class SeakeepingCraft(MarineCraft):
     )
 
     terminals: ClassVar = MarineCraft.terminals
-    feedthrough: ClassVar = MarineCraft.feedthrough
+    feedthrough: ClassVar = {**MarineCraft.feedthrough, "radiation_missed": ()}
 
     def start(self, t: float) -> None:
         """Fill added mass and memory from the file. Raises InputError for one that is not fit."""
