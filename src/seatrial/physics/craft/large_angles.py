@@ -8,11 +8,10 @@ water out. Points are (y, z), m, to starboard and down from the water line at re
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 import numpy as np
-from scipy.optimize import brentq
 
 from ...errors import InputError
 from ..sea.numbers import Array
@@ -41,13 +40,19 @@ def outline(beam: float, draught: float, area: float, freeboard: float, aside: f
     if coefficient >= _FULLEST:
         below = np.array([[half, 0.0], [half, draught], [-half, draught], [-half, 0.0]])
     else:
-        power = 2.0 / float(brentq(lambda n: _fullness(n) - coefficient, 0.3, 1e3))
+        power = 2.0 / _root(lambda n: _fullness(n) - coefficient, 0.3, 1e3)
         t = np.linspace(0.0, math.pi, 2 * _POINTS + 1)
         cos, sin = np.cos(t), np.sin(t)
         y = half * np.sign(cos) * np.abs(cos) ** power
         below = np.column_stack([y, draught * np.abs(sin) ** power])
     deck = [[-half, -freeboard], [half, -freeboard]]
     return np.asarray(np.concatenate([below, deck]) + np.array([aside, 0.0]))
+
+
+def _root(function: Callable[[float], float], low: float, high: float) -> float:
+    from scipy.optimize import brentq  # half a second, of every run if it stood above
+
+    return float(brentq(function, low, high, xtol=1e-12))
 
 
 def _fullness(n: float) -> float:
@@ -81,7 +86,7 @@ def _buoyancy(edges: _Edges, volume: float, phi: float) -> float:
     """Return y of the centre of buoyancy, m, about the origin, at an angle of heel."""
     turned = edges.turned(phi)
     depths = turned.start[:, 1]
-    surface = brentq(lambda s: turned.below(s)[0] - volume, depths.min(), depths.max(), xtol=1e-12)
+    surface = _root(lambda s: turned.below(s)[0] - volume, depths.min(), depths.max())
     displaced, moment = turned.below(float(surface))
     return moment / displaced
 
