@@ -15,6 +15,7 @@ NO_PORT = "the link takes nothing that another program could have"
 RAW = "bytes are passed on as they are: none of them is garbage to the link"
 ALONE = "python-can's virtual bus ends at this process: nobody is at its other end"
 NAMESPACE = "multicast needs a network namespace of its own: tests/kits/can has the gateway in one"
+NODES = "nodes of ROS 2 are its other ends: tests/kits/ros2 has those that go and send nonsense"
 
 NOISE = b"\xff\xfe\x00garbage\r\n>\r<\x80\r\n" * 3
 LINES = b"t12\rT0000zzzz8\rt1239\r\xff\xfe\rr\r" + NOISE
@@ -160,4 +161,5 @@ _KINDS = {
         counter="frames_refused",
         excuses={"unplug": COME_AND_GO},
     ),
+    "ros2": Kind("ros2", Peer, "", excuses={"*": NODES}),
 }
