@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 from seatrial.errors import InputError
-from seatrial.trial.campaigns import campaign as campaigns
+from seatrial.trial.campaigns import in_folders as campaigns
 from seatrial.trial.campaigns.campaign import load_campaign
 from seatrial.trial.campaigns.cases import case_folders, changed_cases, run_cases
 from seatrial.trial.campaigns.in_folders import run_campaign

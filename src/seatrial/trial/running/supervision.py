@@ -61,7 +61,7 @@ class Supervisor:
         self._trials, self._engine, self._hooks = trials, engine, hooks or Hooks()
         self._page, self._alike = page, trials if alike is None else alike
         self._forked: Forked | None = None
-        self._busy = False
+        self._busy = self._is_free = False
         self._order: tuple[Order, int, Path | None, Changes | None] = ("check", 0, None, None)
         self._forget()
 
@@ -113,6 +113,9 @@ class Supervisor:
         """
         self._forget()
         self._order = what, number, folder, changes
+        self._is_free = folder is not None and (
+            not any(folder.iterdir()) if folder.is_dir() else not folder.exists()
+        )
         if _IN_PROCESS:
             return
         order = what, number, None if folder is None else str(folder), changes
@@ -237,7 +240,10 @@ class Supervisor:
         if not self._manifest:
             raise self._dead_before_start()
         status, error = self._how()
-        if self._folder == Path():
+        if self._folder == Path() and out is not None and self._is_free:
+            folder = out  # which the run may have made before it could say so
+            folder.mkdir(parents=True, exist_ok=True)
+        elif self._folder == Path():
             folder = claim_folder(out, self._trials[number].name, MANIFEST)
         else:
             folder = self._shown(out)
