@@ -73,5 +73,5 @@ def _shown(run: dict[str, Any] | None, figure: str) -> str:
     return f"{text} ({number(value / run['length'])} L)" if si == "m" and run["length"] else text
 
 
-for _path in sorted(FOLDER.glob("*.json")):
+for _path in sorted({*FOLDER.glob("*.json")} - {FOLDER / "measured.json"}):
     part(f"sea-trials-{_path.stem}")(partial(_part, _path.stem))

@@ -11,8 +11,8 @@ from .actuator import Actuator
 
 REMOTE, STOP = "remote", "stop"
 STEPS = ("dead slow", "slow", "half", "full")
-SIDES = {"ahead": 1.0, "astern": -1.0}
-ORDERS = (REMOTE, STOP, *(f"{step} {side}" for side in SIDES for step in STEPS))
+AHEAD, ASTERN = (tuple(f"{step} {side}" for step in STEPS) for side in ("ahead", "astern"))
+ORDERS = (REMOTE, STOP, *AHEAD, *ASTERN)
 
 
 class MarineEngine(Actuator):
@@ -106,12 +106,16 @@ class MarineEngine(Actuator):
 
     def _ordered(self) -> float:
         """Return the share of n_r that is ordered. Raises InputError for an unknown one."""
-        if self.telegraph not in ORDERS:
-            raise InputError(f"{self.name}: {unknown('telegraph order', self.telegraph, ORDERS)}")
-        if self.telegraph in (REMOTE, STOP):
-            return float(self.command) if self.telegraph == REMOTE else 0.0
-        step, _, side = self.telegraph.rpartition(" ")
-        return SIDES[side] * float(self.telegraph_speeds[STEPS.index(step)])
+        if self.telegraph == REMOTE:
+            return float(self.command)
+        if self.telegraph == STOP:
+            return 0.0
+        for place in range(len(STEPS)):
+            if self.telegraph == AHEAD[place]:
+                return float(self.telegraph_speeds[place])
+            if self.telegraph == ASTERN[place]:
+                return -float(self.telegraph_speeds[place])
+        raise InputError(f"{self.name}: {unknown('telegraph order', self.telegraph, ORDERS)}")
 
     def _governed(self, order: float, h: float) -> float:
         """Return M; the integral waits while M is limited, and starts anew after M = 0."""
