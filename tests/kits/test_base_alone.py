@@ -27,7 +27,7 @@ PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]
 EXTRAS = {
     extra: [Requirement(text).name for text in lines]
     for extra, lines in PROJECT["optional-dependencies"].items()
-    if extra not in ("all", "dev", "docs", "fuzz")
+    if extra not in ("all", "dev", "docs", "fuzz", "mutate")
 }
 KNOWN = {name: text for kit in kits().found for name, text in kit.libraries.items()} | LIBRARIES
 REFUSED = sorted({*KNOWN, "plotly", "matplotlib", "pandas"} - {"google"})

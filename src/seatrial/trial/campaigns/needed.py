@@ -45,7 +45,7 @@ def needed_files(campaign: Campaign) -> list[Path]:
     for trial in campaign.trials:
         for kind, name, path in _by_name(trial.rig):
             is_below = path.parent in (here / kind, here / FOLDERS / name)
-            if is_below and not name.endswith(".toml"):
+            if is_below and not name.endswith(".toml") and not _is_ours(path):
                 found[here] = None
     return list(found)
 
@@ -58,8 +58,6 @@ def deciding_files(campaign: Campaign, trial: Trial, *, is_absolute_too: bool = 
     text in one of these names by a path from its own folder, of a sketch its whole folder. Shipped
     files, and those of kits, are not among them.
     """
-    ours = [shipped_folder(each).resolve() for each in _SHIPPED]
-    ours += [content_of(kit).resolve() for kit in kits().found]
     others = {each.read_from.path.resolve() for each in campaign.trials if each is not trial}
     pending = [campaign.read_from.path.resolve()]
     pending += _named_in(campaign.changes, Path.cwd(), is_absolute_too)
@@ -73,11 +71,17 @@ def deciding_files(campaign: Campaign, trial: Trial, *, is_absolute_too: bool = 
     found: dict[Path, None] = {}
     while pending:
         path = pending.pop()
-        is_ours = any(path.is_relative_to(folder) for folder in ours)
-        if path not in found and path not in others and not is_ours:
+        if path not in found and path not in others and not _is_ours(path):
             found[path] = None
             pending += _named_by(path, is_absolute_too)
     return list(found)
+
+
+def _is_ours(path: Path) -> bool:
+    """Say if a file is shipped, or of a kit."""
+    folders = [shipped_folder(each) for each in _SHIPPED]
+    folders += [content_of(kit) for kit in kits().found]
+    return any(path.is_relative_to(folder.resolve()) for folder in folders)
 
 
 def _by_choices(campaign: Campaign, trial: Trial) -> Iterator[Trial]:
