@@ -101,12 +101,42 @@ def test_values_that_lack_leave_it_undecided():
         asked('mean of "worst of roll" < 3 deg'),
         asked('quantile 90 % of "worst of roll" > 1 deg'),
     ]
-    assert [each.verdict for each in accepted(rule, rows)] == ["pass", "pass"]
-    assert "deg" in accepted(rule, rows)[0].detail
+    assert [each.verdict for each in accepted(rule, rows, {})] == ["pass", "pass"]
+    assert "deg" in accepted(rule, rows, {})[0].detail
+    assert [each.verdict for each in accepted(rule, [], {})] == ["undecided", "undecided"]
     rows[7]["worst of roll"] = None
-    found = accepted(rule, rows)
+    found = accepted(rule, rows, {})
     assert [each.verdict for each in found] == ["undecided", "undecided"]
     assert "1 cases have no value" in found[0].detail
+
+
+def test_cases_of_trials_without_a_criterion_say_nothing_of_it():
+    rows = [{"trial": "a", "passed": True, "upright": True, "worst of upright": 2.0,
+             "unit of upright": "deg"}] * 60  # fmt: skip
+    rows += [{"trial": "b", "passed": True, "upright": None, "worst of upright": None,
+              "unit of upright": None}] * 60  # fmt: skip
+    checks = ('probability of failure of "upright" < 5 %', 'mean of "worst of upright" <= 2 deg')
+    found = accepted([asked(check) for check in checks], rows, {"upright": {"a"}})
+    assert [each.verdict for each in found] == ["pass", "pass"]
+    rows[0] = {**rows[0], "upright": None}  # a case of its own that could not go on
+    assert accepted([asked(checks[0])], rows, {"upright": {"a"}})[0].verdict == "undecided"
+
+
+def test_a_column_that_the_table_will_not_have_is_refused_before_the_first_case(written, tmp_path):
+    check = "check = 'mean of \"worst of few\" < 3 m'"
+    written(
+        DESIGN.replace('check = "probability of failure < LIMIT at 95 %"', check).replace(
+            "few", "fw"
+        )
+    )
+    done = seatrial("run", "campaign.toml", "--engine", "direct", "--out", "out", cwd=tmp_path)
+    assert done.returncode == 2
+    assert (
+        "criteria: reliable: unknown column 'worst of fw'; did you mean 'worst of few'"
+        in done.stderr
+    )
+    assert not (tmp_path / "out").exists()
+    assert not list((tmp_path / "seen").iterdir())
 
 
 @pytest.mark.parametrize(

@@ -25,6 +25,7 @@ DATA_FILES = ("gain.txt",)
 
 
 class Sum(Component):
+    kind = "Sum"
     a = Parameter(0.0, "1", "a")
     b = Parameter(0.0, "1", "b")
     x = Parameter(0.0, "1", "of a table")
@@ -116,7 +117,9 @@ def test_every_file_that_a_case_opens_decides_its_identity(project, tmp_path):
 def test_what_is_beside_them_decides_nothing(project):
     before = identity_of(campaign_of(project))
     (project / "parts/notes.md").write_text("to be done", "utf-8")
-    (project / "out").mkdir()
+    # A text of a file may have the name of a folder; results of runs in it are none of its content.
+    (project / "parts/Sum/out").mkdir(parents=True)
+    (project / "parts/Sum/out/manifest.json").write_text("{}", "utf-8")
     assert not identity_of(campaign_of(project)).changed(before.content())
 
 

@@ -16,7 +16,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any, Literal, cast
 
@@ -39,6 +39,7 @@ _FORMS = (
     "'mean of \"worst of NAME\" < 3 deg', 'quantile 95 % of \"COLUMN\" < 5 m'"
 )
 _USUAL = 0.95
+_PREFIX = re.compile("^(?:worst|robustness) of ")
 
 
 class AcceptanceEntry(FileModel):
@@ -205,11 +206,31 @@ def quantile_bounds(
     return low, high
 
 
+def check_columns(criteria: Iterable[Acceptance], columns: Collection[str]) -> None:
+    """Raise InputError for a criterion of a column that a table has not."""
+    for each in criteria:
+        if each.column and each.column not in columns:
+            raise InputError(f"criteria: {each.name}: {unknown('column', each.column, columns)}")
+
+
 def accepted(
-    criteria: Iterable[Acceptance], rows: Sequence[Mapping[str, Any]], *, at_any_case: bool = False
+    criteria: Iterable[Acceptance],
+    rows: Sequence[Mapping[str, Any]],
+    trials: Mapping[str, Collection[str]],
+    *,
+    at_any_case: bool = False,
 ) -> list[Accepted]:
-    """Return what becomes of criteria on the rows of a table. Raises InputError as `_column`."""
-    return [_accepted(each, rows, at_any_case) for each in criteria]
+    """Return what becomes of criteria on the rows of a table.
+
+    ``trials`` are, by criterion of a trial, the trials that have it: the cases of others say
+    nothing of it. Raises InputError as `_column` does.
+    """
+    found = []
+    for each in criteria:
+        having = trials.get(_PREFIX.sub("", each.column))
+        of_them = rows if having is None else [row for row in rows if row["trial"] in having]
+        found.append(_accepted(each, of_them, at_any_case))
+    return found
 
 
 def _accepted(
@@ -217,7 +238,6 @@ def _accepted(
 ) -> Accepted:
     if criterion.what in ("failure", "success"):
         column = criterion.column or "passed"
-        _require(column, rows, criterion)
         failed = sum(row[column] is not True for row in rows)
         any_case = at_any_case and criterion.is_of_failure
         found = criterion.of_failures(failed, len(rows), at_any_case=any_case)
@@ -234,7 +254,7 @@ def _accepted(
             if criterion.what == "mean"
             else quantile_bounds(values, criterion.share, criterion.confidence)
         )
-        limit = quantity(criterion.limit, unit)
+        limit = quantity(criterion.limit, unit) if values else math.nan  # no value, no unit
         found = outcome(low, high, limit, is_below=criterion.is_below)
         text = f"{quantity_text(low, unit, 4)} to {quantity_text(high, unit, 4)}"
         if lacking:
@@ -245,7 +265,6 @@ def _accepted(
 
 def _column(criterion: Acceptance, rows: Sequence[Mapping[str, Any]]) -> tuple[list[float], str]:
     """Return the values of a column and their unit. Raises InputError for several units."""
-    _require(criterion.column, rows, criterion)
     values = [row[criterion.column] for row in rows]
     known = [float(v) for v in values if isinstance(v, (int, float)) and math.isfinite(v)]
     key = f"unit of {criterion.column.removeprefix('worst of ')}"
@@ -253,11 +272,6 @@ def _column(criterion: Acceptance, rows: Sequence[Mapping[str, Any]]) -> tuple[l
     if len(units) > 1:
         raise InputError(f"criteria: {criterion.name}: values are in {' and '.join(sorted(units))}")
     return known, next(iter(units), "") or "1"
-
-
-def _require(column: str, rows: Sequence[Mapping[str, Any]], criterion: Acceptance) -> None:
-    if rows and column not in rows[0]:
-        raise InputError(f"criteria: {criterion.name}: {unknown('column', column, rows[0])}")
 
 
 def _percent(share: float) -> str:

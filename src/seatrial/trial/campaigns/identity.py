@@ -10,11 +10,11 @@ from pathlib import Path
 from typing import Any
 
 from ...errors import InputError
-from ..records.program import files_below, program
+from ..records.program import program
 from ..records.run_schema import CAMPAIGN, checked_json
 from ..running.resuming import Note
 from .campaign import Campaign
-from .needed import deciding_files
+from .needed import deciding_files, files_in
 
 IDENTITY = "identity"
 """Its key in the index of a campaign's folder."""
@@ -103,7 +103,7 @@ def changes_since(index: Path, identity: Identity, note: Note, *, rerun_changed:
 
 def _hashes(paths: list[Path], base: Path) -> Iterator[tuple[str, str]]:
     for path in paths:
-        for file in files_below(path) if path.is_dir() else [path]:
+        for file in files_in(path) if path.is_dir() else [path]:
             with file.open("rb") as stream:
                 digest = hashlib.file_digest(stream, "sha256").hexdigest()
             yield Path(os.path.relpath(file, base)).as_posix(), digest

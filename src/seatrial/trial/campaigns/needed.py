@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import os
 import re
 from collections.abc import Iterator, Mapping
 from itertools import product
@@ -25,6 +26,7 @@ from .campaign import Campaign
 _SHIPPED = ("fmus", "harness", "hil_profiles", "vehicles")
 _NAMED = re.compile(r".+?\.(?:fmu|py|toml)(?=[.:]|$)")
 """The file in ``boat.py:Boat`` and ``boat.toml.hull``."""
+_LEFT_OUT = {"runs", "__pycache__", "node_modules", "site-packages"}
 _SKETCH = ".ino"
 _MODULE = ".py"
 
@@ -82,6 +84,16 @@ def _is_ours(path: Path) -> bool:
     folders = [shipped_folder(each) for each in _SHIPPED]
     folders += [content_of(kit) for kit in kits().found]
     return any(path.is_relative_to(folder.resolve()) for folder in folders)
+
+
+def files_in(top: Path) -> Iterator[Path]:
+    """Yield the files of a user's folder, but not what is hidden, and what runs have left."""
+    for folder, folders, names in os.walk(top):
+        folders[:] = sorted(f for f in folders if f not in _LEFT_OUT and not f.startswith("."))
+        if "campaign.json" in names or "manifest.json" in names:  # what runs have left
+            folders.clear()
+            continue
+        yield from (Path(folder, name) for name in sorted(names) if not name.startswith("."))
 
 
 def _by_choices(campaign: Campaign, trial: Trial) -> Iterator[Trial]:

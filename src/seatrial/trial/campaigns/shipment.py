@@ -8,7 +8,6 @@ import json
 import os
 import tarfile
 import tempfile
-from collections.abc import Iterator
 from contextlib import chdir
 from functools import lru_cache
 from pathlib import Path, PurePosixPath
@@ -16,10 +15,9 @@ from pathlib import Path, PurePosixPath
 from ...errors import InputError
 from ..records.program import program
 from .campaign import Campaign, load_campaign
-from .needed import needed_files
+from .needed import files_in, needed_files
 
 MOST_BYTES = 200_000_000
-_LEFT_OUT = {"runs", "__pycache__", "node_modules", "site-packages"}
 
 
 def packed(campaign: Campaign) -> bytes:
@@ -38,7 +36,7 @@ def packed(campaign: Campaign) -> bytes:
     with tarfile.open(fileobj=stream, mode="w", format=tarfile.PAX_FORMAT) as archive:
         said = (json.dumps(program()), name, place, json.dumps(dict(campaign.changes)))
         _add(archive, "campaign", "\n".join(said).encode())
-        for path in _files(top) if top is not None else ():
+        for path in files_in(top) if top is not None else ():
             assert top is not None
             data = path.read_bytes()
             total += len(data)
@@ -114,15 +112,6 @@ def _top(campaign: Campaign) -> Path | None:
     common = Path(os.path.commonpath([p if p.is_dir() else p.parent for p in files]))
     within = [parent for parent in (common, *common.parents) if parent.name == "harness"]
     return within[-1].parent if within else common
-
-
-def _files(top: Path) -> Iterator[Path]:
-    for folder, folders, names in os.walk(top):
-        folders[:] = sorted(f for f in folders if f not in _LEFT_OUT and not f.startswith("."))
-        if "campaign.json" in names or "manifest.json" in names:  # what runs have left
-            folders.clear()
-            continue
-        yield from (Path(folder, name) for name in sorted(names) if not name.startswith("."))
 
 
 def _add(archive: tarfile.TarFile, name: str, data: bytes) -> None:

@@ -23,7 +23,7 @@ from ..running.hooks import Hooks
 from ..running.measuring import Measured
 from ..running.output import claim_folder, write_json
 from ..running.resuming import Note, cut_aside, has_index, set_aside
-from .acceptance import Accepted, accepted
+from .acceptance import Accepted, accepted, check_columns
 from .asked import Asked
 from .campaign import INDEX, Campaign
 from .case_list import Cases
@@ -141,6 +141,7 @@ def run_sweep(
                 cut_aside(left / RESULTS, error, hooks.note)
         kept = without_touched(ended_cases(left, len(cases), hooks.note), cases, changes, left)
     columns = columns_of(campaign)
+    check_columns(campaign.acceptance, [column.name for column in columns])
     plan = replace(plan, recorded=check(cases, plan, hooks))
     with closing(workers_of(campaign, cases, plan, how, hooks)) as workers:
         folder = left or claim_folder(out, campaign.read_from.name, INDEX)
@@ -149,6 +150,7 @@ def run_sweep(
         with EndedLog(folder) as log, Tables(folder, columns) as tables:
             sweep.run(log, tables, kept, done)
     summary = sweep.summary
+    write_json(folder / INDEX, {**index, "cases": summary.kept}, synced=True)
     summary.accepted = _accepted(campaign, folder)
     said = {"criteria": [each.content() for each in summary.accepted]}
     write_json(folder / INDEX, {**index, **said, "cases": summary.kept}, synced=True)
@@ -329,7 +331,11 @@ def _accepted(campaign: Campaign, folder: Path) -> list[Accepted]:
     until = campaign.file.until
     rows = list(read_rows(folder / RESULTS)) if campaign.file.criteria else []
     is_sequential = until is not None and until.decided
-    return accepted(campaign.acceptance, rows, at_any_case=is_sequential)
+    trials: dict[str, set[str]] = {}
+    for trial in campaign.trials:
+        for name, _ in trial.criteria:
+            trials.setdefault(name, set()).add(trial.name)
+    return accepted(campaign.acceptance, rows, trials, at_any_case=is_sequential)
 
 
 def _summary(folder: Path, planned: int, campaign: Campaign) -> Summary:

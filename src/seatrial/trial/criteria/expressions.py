@@ -252,9 +252,9 @@ def _to_angle(node: Operation, exponents: list[Exponents], units: Units) -> Expo
     return _ANGLE
 
 
-def _distance(north: Value, east: Value, *places: Value) -> Any:
+def _distance(north: Value, east: Value, *places: float) -> Any:
     """Return the distance from a path through places, north and east of each."""
-    corners = np.reshape([float(np.max(np.atleast_1d(each))) for each in places], (-1, 2))
+    corners = np.reshape([float(each) for each in places], (-1, 2))
     at = np.stack(np.broadcast_arrays(np.asarray(north, float), east), axis=-1)
     found = [np.hypot(*np.moveaxis(at - corner, -1, 0)) for corner in corners[:1]]
     for begin, end in pairwise(corners):
