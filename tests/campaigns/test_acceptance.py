@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from scipy import stats
 
+from seatrial import load_campaign_result
 from seatrial.errors import InputError
 from seatrial.trial.campaigns.acceptance import (
     AcceptanceEntry,
@@ -182,6 +183,7 @@ def test_a_campaign_ends_where_it_is_decided(written, tmp_path, limit, word, sta
     assert f"{word}  reliable: probability of failure" in done.stdout
     index = json.loads((tmp_path / "out/campaign.json").read_bytes())
     assert index["criteria"][0]["verdict"] == word.lower()
+    assert load_campaign_result(tmp_path / "out").passed is (word == "PASS")
     ran = int(done.stdout.split(" cases pass")[0].split(" of ")[-1])
     assert ran == ended if word == "UNDECIDED" else ran < ended
     assert "Criteria of the campaign" in (tmp_path / "out/report.html").read_text("utf-8")
