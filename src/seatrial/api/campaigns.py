@@ -62,11 +62,11 @@ class CampaignResult:
         self.cases = [self._case(entry) for entry in index["cases"]]
         """In the order of the campaign; beside a table those that have kept their folders."""
         self.criteria: list[dict[str, str]] = index.get("criteria", [])
-        """What became of the campaign's own criteria: ``name``, ``check``, ``verdict``, ``detail``."""
+        """Of the campaign's own criteria: ``name``, ``check``, ``verdict`` and ``detail``."""
 
     @cached_property
     def passed(self) -> bool:
-        """True if the campaign's own criteria pass, or without any every case. Raises InputError."""
+        """True if the campaign's own criteria pass; without any, if every case does."""
         if self.criteria:
             return all(each["verdict"] == "pass" for each in self.criteria)
         return self._counted[0] == self._counted[1]
