@@ -6,6 +6,7 @@ import csv
 import json
 import logging
 import os
+import signal
 import subprocess
 import sys
 import zipfile
@@ -18,6 +19,7 @@ import pytest
 import seatrial as api
 from seatrial.errors import InputError, SimulationError
 from seatrial.trial.files.trial import load_trial
+from seatrial.trial.running import run as running
 from seatrial.trial.running.hooks import Hooks
 from seatrial.trial.running.measuring import measure_trial
 from seatrial.trial.running.supervision import Supervisor, run_supervised
@@ -166,6 +168,21 @@ def test_a_death_in_a_step_is_a_failed_run(how: str, engine: str, trial, tmp_pat
     assert message.endswith(manifest(tmp_path / "run")["error"])
     assert times(tmp_path / "run") == ["0.0", "0.1", "0.2", "0.3"]
     assert (tmp_path / "run" / "report.html").is_file()
+
+
+def test_a_death_as_the_folder_is_made_is_a_failed_run(trial, tmp_path, monkeypatch) -> None:
+    """The folder is there, and the supervisor was not told so yet."""
+    claimed = running.claim_folder
+
+    def killed(*given: Any) -> Path:
+        claimed(*given)
+        os.kill(os.getpid(), signal.SIGKILL)
+        raise AssertionError
+
+    monkeypatch.setattr(running, "claim_folder", killed)
+    result = run_supervised(load_trial(trial("fine")), tmp_path / "run", engine="direct")
+    assert result.status == manifest(tmp_path / "run")["status"] == "failed"
+    assert "was ended by SIGKILL" in str(result.error)
 
 
 @pytest.mark.parametrize("how", [crashing.SEGFAULT, crashing.ABORT, crashing.EXIT])
