@@ -171,7 +171,7 @@ def test_a_death_in_a_step_is_a_failed_run(how: str, engine: str, trial, tmp_pat
 
 
 def test_a_death_as_the_folder_is_made_is_a_failed_run(trial, tmp_path, monkeypatch) -> None:
-    """The folder is there, and the supervisor was not told so yet."""
+    """The folder is there, and the supervisor does not know it yet."""
     claimed = running.claim_folder
 
     def killed(*given: Any) -> Path:
