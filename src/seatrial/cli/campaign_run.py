@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import Any
 
 import typer
 from rich.markup import escape
 
 from ..errors import InputError, SimulationError
 from ..system.system import Engine
-from ..trial.campaigns.campaign import Campaign, load_campaign
+from ..trial.campaigns.campaign import Campaign
 from ..trial.campaigns.cases import Case
 from ..trial.campaigns.further_page import write_further_page
 from ..trial.campaigns.in_folders import run_campaign
@@ -42,26 +40,20 @@ class How:
     rerun_changed: bool
     cluster: str | None
     keep: str | None
-    hang_after: float | None
     keep_going: bool
 
 
-def run_cases(
-    name: str, changes: Mapping[str, Any], out: Path | None, how: How, leaves: Leaves
-) -> None:
+def run_cases(campaign: Campaign, out: Path | None, how: How, leaves: Leaves) -> None:
     """Run a campaign into its table, or each case into a folder. Raises InputError."""
-    campaign = load_campaign(name, changes)
     print_notes([f"{trial} is left out: {why}" for trial, why in campaign.left_out.items()])
     if how.keep is not None or how.cluster is not None or campaign.has_table:
-        if how.hang_after is not None and how.cluster is not None:
-            raise InputError("--hang-after works with cases that run on this machine")
         if campaign.file.page is not None:
             raise InputError(
                 "--keep and --cluster leave a table: this campaign makes a page of all"
             )
         keep = keep_named(how.keep, "--keep")
         sweep = SweepHow(how.engine, how.jobs, how.cluster, keep, how.resume, how.rerun_changed)
-        run_table(campaign, out, sweep, how.hang_after, junit=leaves.junit, report=leaves.report)
+        run_table(campaign, out, sweep, junit=leaves.junit, report=leaves.report)
     else:
         _run_folders(campaign, out, how, leaves)
 
@@ -81,7 +73,6 @@ def _run_folders(campaign: Campaign, out: Path | None, how: How, leaves: Leaves)
                 stop_requested=stop.requested,
                 interruptible=stop.interruptible,
                 note=lambda text: print_notes([text]),
-                hang_after=how.hang_after,
                 keep_going=how.keep_going,
             )
             watch.expect(len(cases))

@@ -12,6 +12,8 @@ from ..links.hardware import allow_devices, allow_network
 from ..plugins import service
 from ..system.fault_entry import read_fault
 from ..system.system import Engine
+from ..trial.campaigns.campaign import load_campaign
+from ..trial.files.limit_entry import NONE, limits_of
 from ..trial.files.trial import Trial, load_trial
 from ..trial.reports.playing import play
 from ..trial.reports.report import write_report
@@ -37,11 +39,11 @@ from .options import (
 )
 from .run_options import (
     Cluster,
-    HangAfter,
     Jobs,
     Junit,
     KeepGoing,
     KeepName,
+    Limit,
     Live,
     LiveControl,
     NoReport,
@@ -89,12 +91,13 @@ def run(
     cluster: Cluster = None,
     keep: KeepName = None,
     no_report: NoReport = False,
-    hang_after: HangAfter = None,
+    limit: Limit = None,
     keep_going: KeepGoing = False,
 ) -> None:
     """Run a trial, a campaign of trials, or a vehicle that sets out, and say what holds."""
     chosen = engine_named(engine)
-    _allow(hardware, network, hang_after, keep_going)
+    _allow(hardware, network, keep_going)
+    limits = limits_of(limit or [], "--limit")
     changes = changes_of(settings, choices, vehicle, autopilot)
     pace = {"factor": real_time, "overrun": overrun}
     pace = {key: value for key, value in pace.items() if value is not None}
@@ -114,8 +117,9 @@ def run(
         for refusal, given in of_trials.items():
             if given:
                 raise InputError(refusal)
-        how = How(chosen, jobs, resume, rerun_changed, cluster, keep, hang_after, keep_going)
-        run_cases(trial, changes, out, how, leaves)
+        how = How(chosen, jobs, resume, rerun_changed, cluster, keep, keep_going)
+        campaign = load_campaign(trial, changes, limits)
+        run_cases(campaign, out, how, leaves)
         return
     if jobs is not None or resume or rerun_changed or keep or cluster:
         said = "--jobs, --resume, --rerun-changed, --keep and --cluster"
@@ -123,17 +127,17 @@ def run(
     trial, changes = with_vehicle(trial, changes)
     loaded = load_trial(trial, changes=changes, origin="--set")
     loaded = loaded.failing([read_fault(text, "--fault") for text in faults or []], "--fault")
-    loaded = _paced(loaded, pace).recording(record, "--record")
-    _run_trial(loaded, out, chosen, page, leaves, hang_after, keep_going)
+    loaded = _paced(loaded, pace).recording(record, "--record").limited(limits, "--limit")
+    if hardware and loaded.limits.call == NONE:
+        raise InputError("limit.call = none does not go with --hardware: a device needs a limit")
+    _run_trial(loaded, out, chosen, page, leaves, keep_going)
 
 
-def _allow(hardware: bool, network: bool, hang_after: float | None, keep_going: bool) -> None:
-    """Allow devices and other hosts. Raises InputError for options that need devices or limits."""
+def _allow(hardware: bool, network: bool, keep_going: bool) -> None:
+    """Allow devices and other hosts. Raises InputError for options that need devices."""
     if keep_going and not hardware:
         raise InputError("--keep-going goes with --hardware: a simulation goes on in any case")
     if hardware:
-        if hang_after == 0.0:
-            raise InputError("--hang-after 0 does not go with --hardware: a device needs a limit")
         allow_devices()
     if network:
         allow_network()
@@ -145,7 +149,6 @@ def _run_trial(
     engine: Engine,
     page: Any | None,
     leaves: Leaves,
-    hang_after: float | None,
     keep_going: bool,
 ) -> None:
     print_notes(trial.notes)
@@ -157,7 +160,6 @@ def _run_trial(
                 stop_requested=stop.requested,
                 interruptible=stop.interruptible,
                 reachable=print_reachable,
-                hang_after=hang_after,
                 keep_going=keep_going,
             )
             if page is None:

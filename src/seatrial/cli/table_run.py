@@ -29,7 +29,6 @@ def run_table(
     campaign: Campaign,
     out: Path | None,
     how: How,
-    hang_after: float | None,
     *,
     junit: Path | None,
     report: bool,
@@ -55,7 +54,6 @@ def run_table(
             stop_requested=stop.requested,
             interruptible=stop.interruptible,
             note=lambda text: print_notes([text]),
-            hang_after=hang_after,
         )
         summary = run_sweep(campaign, out, how, hooks, done)
     page = write_table_page(summary.folder) if report else None

@@ -40,6 +40,8 @@ from .table import RESULTS, Tables, arrow, read_rows
 from .workers import Here, Task, Workers
 
 Done = Callable[[Case, Ended], None]
+_UNDECIDING = {"title", "keep", "samples", "ask", "map", "criteria", "limit"}
+"""Keys of a campaign that change no run that comes to an end."""
 _SLICE_S = 0.2
 """A stop is noticed within this time."""
 
@@ -270,7 +272,7 @@ def index_of(
     campaign: Campaign, identity: Identity, engine: Engine, count: int, question: Any = None
 ) -> dict[str, Any]:
     """Return the index of a campaign's folder, or of a question's, without its cases."""
-    file = campaign.file.model_dump(exclude={"title", "keep", "samples", "ask", "map", "criteria"})
+    file = campaign.file.model_dump(exclude=_UNDECIDING)
     asked = [] if question is None else [question]
     said = json.dumps([engine, file, *asked], default=str)
     drawn = campaign.file.map if question is None else None
