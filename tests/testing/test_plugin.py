@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from pathlib import Path
-from xml.etree import ElementTree
 
 import pytest
 
@@ -52,11 +51,6 @@ def test_mistake(trial):
     pass
 
 
-@pytest.mark.trial("turns.toml", limit={"memory": "1 kB"}, set={"stop": "1000 s"})
-def test_limit(trial):
-    pass
-
-
 def test_steps(simulation, assert_holds):
     sim = simulation("rig.toml", set={"servo.command": 0.3})
     sim.run("1 s")
@@ -76,21 +70,6 @@ def project(tmp_path_factory: pytest.TempPathFactory) -> Path:
     done = pytest_in(folder, "-n", "2", "--junitxml", "junit.xml")
     (folder / "output.txt").write_text(done.stdout + done.stderr)
     return folder
-
-
-def test_a_run_beyond_its_limit_fails_its_test(project: Path) -> None:
-    pattern = r"servo: its .*: beyond its limit of 0.001 MB of memory \(limit.memory\)"
-    text = ElementTree.tostring(cases(project / "junit.xml")["test_limit"], "unicode")
-    assert re.search(pattern, text)
-
-
-def test_trials_in_toml_have_the_limit_of_the_option(project: Path) -> None:
-    limit = ("--seatrial-limit", "memory=1 kB")
-    done = pytest_in(project, "--seatrial", "turns.toml", *limit)
-    assert done.returncode == 1
-    assert "beyond its limit of 0.001 MB of memory (limit.memory)" in done.stdout
-    wrong = pytest_in(project, "--seatrial", "turns.toml", "--seatrial-limit", "memory")
-    assert "--seatrial-limit: KEY=VALUE is needed, found 'memory'" in wrong.stdout
 
 
 def failure(project: Path, name: str) -> str:
@@ -183,3 +162,17 @@ def test_the_plugin_is_in_the_metadata() -> None:
 
     project = tomllib.loads((Path(__file__).parents[2] / "pyproject.toml").read_text("utf-8"))
     assert project["project"]["entry-points"]["pytest11"] == {"seatrial": "seatrial.testing.plugin"}
+
+
+def test_a_run_beyond_a_limit_of_the_mark_or_of_the_option_fails_its_test(tmp_path: Path) -> None:
+    mark = '@pytest.mark.trial("long.toml", limit={"memory": "1 kB"})'
+    (tmp_path / "rig.toml").write_text(RIG)
+    (tmp_path / "long.toml").write_text(TRIAL.format(least=0.5).replace('"1 s"', '"1000 s"'))
+    (tmp_path / "test_long.py").write_text(f"import pytest\n{mark}\ndef test(trial): pass\n")
+    for arguments in (["test_long.py"], ["--seatrial", "long.toml", "--seatrial-limit"]):
+        given = ["memory=1 kB"] if len(arguments) > 1 else []
+        done = pytest_in(tmp_path, *arguments, *given)
+        assert done.returncode == 1
+        assert "beyond its limit of 0.001 MB of memory (limit.memory)" in done.stdout
+    wrong = pytest_in(tmp_path, *arguments, "memory")
+    assert "--seatrial-limit: KEY=VALUE is needed, found 'memory'" in wrong.stdout
