@@ -70,6 +70,7 @@ def _run_folders(campaign: Campaign, out: Path | None, how: How, leaves: Leaves)
             hooks = Hooks(
                 building=watch.building,
                 progress=watch.campaign,
+                under_way=watch.under_way,
                 stop_requested=stop.requested,
                 interruptible=stop.interruptible,
                 note=lambda text: print_notes([text]),

@@ -39,19 +39,22 @@ def run_table(
     planned = len(campaign.cases())
     with stoppable() as stop, Watch(campaign.read_from.name) as watch:
         watch.expect(planned)
-        ended_count = failed = 0
+        failed = 0
 
         def done(case: Case, ended: Ended) -> None:
-            nonlocal ended_count, failed
-            ended_count += 1
+            nonlocal failed
             if not ended.measured.passed:
                 failed += 1
                 if failed <= _SAID:
                     watch.log(lambda: _print_failed(case, ended))
-            watch.cases(ended_count, failed)
+
+        def under_way(ended: int, case: int, wall: float) -> None:
+            watch.cases(ended, failed)
+            watch.under_way(ended, case, wall)
 
         hooks = Hooks(
             stop_requested=stop.requested,
+            under_way=under_way,
             interruptible=stop.interruptible,
             note=lambda text: print_notes([text]),
         )

@@ -6,6 +6,7 @@ import hashlib
 import json
 import math
 import shutil
+import time
 from collections import deque
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, wait
@@ -188,6 +189,8 @@ class Sweep:
         self._cases, self._ends = cases, is_enough
         self._workers, self._folder, self._hooks = workers, folder, hooks
         self._running: dict[Future[list[Ended | None]], Task] = {}
+        self._begun: dict[Future[list[Ended | None]], float] = {}
+        """When tasks were first seen to run, monotonic wall time, s."""
         self._again: deque[Task] = deque()
         self._early: dict[int, Ended] = {}
         self._stopping = False
@@ -219,6 +222,7 @@ class Sweep:
             for ended in self._ready():
                 log.add(ended)
                 self._early[ended.number] = ended
+            self._say_longest()
         for number in sorted(self._early):  # of a stop: behind a case that has not ended
             if self.summary.enough:
                 self._drop(self._early[number])
@@ -233,6 +237,7 @@ class Sweep:
             for future in list(self._running):
                 if future.cancel() or self.summary.enough or self._hooks.stop_requested() > 1:
                     del self._running[future]
+                    self._begun.pop(future, None)
             return
         places = self._workers.places - len(self._running)
         for _ in range(places):
@@ -247,6 +252,7 @@ class Sweep:
         ready, _ = wait(self._running, _SLICE_S, FIRST_COMPLETED)
         for future in ready:
             task = self._running.pop(future)
+            self._begun.pop(future, None)
             if (error := future.exception()) is not None:
                 if not self._workers.lost(error):
                     raise error
@@ -261,6 +267,16 @@ class Sweep:
                 wall = ended.measured.wall
                 self._wall = 0.9 * self._wall + 0.1 * wall if known else wall
                 yield ended
+
+    def _say_longest(self) -> None:
+        now = time.monotonic()
+        for future in self._running:
+            if future.running():
+                self._begun.setdefault(future, now)
+        if self._begun:
+            oldest = min(self._begun, key=self._begun.__getitem__)
+            number, wall = self._running[oldest][0], now - self._begun[oldest]
+            self._hooks.under_way(self.summary.ended + len(self._early), number, wall)
 
     def _drop(self, ended: Ended) -> None:
         """Remove what a case has left that ran though those before it were enough."""

@@ -23,6 +23,10 @@ class StoppedError(SimulationError):
     """A run was stopped before it began: it left nothing."""
 
 
+class InterruptedRun(KeyboardInterrupt):
+    """The process of a run was interrupted before the run began: it left nothing."""
+
+
 class BeyondLimitError(SimulationError):
     """A run went beyond one of its limits, and left nothing."""
 
@@ -52,6 +56,9 @@ class Hooks:
 
     building: Callable[[str], None] = lambda _: None
     progress: Progress = lambda _passed, _whole: None
+    under_way: Callable[[int, int, float], None] = lambda _ended, _case, _wall: None
+    """Called now and then while cases of a campaign run: how many have ended, the number from 0 of
+    the case that has been running longest, and its wall time so far, s."""
     assembled: Callable[[System, dict[str, Any]], None] = lambda _system, _manifest: None
     """Called with the rig and the run's manifest, before the components are started.
 

@@ -96,6 +96,7 @@ def _limited(child: Child, what: str) -> Iterator[None]:
     is_run = what in ("measure", "run")
     trace.before = resident_bytes() if is_run else 0
     trace.runs += is_run
+    child.loads = True
     try:
         yield
     finally:
@@ -104,13 +105,23 @@ def _limited(child: Child, what: str) -> Iterator[None]:
 
 def _unnoted(child: Child) -> Hooks:
     """Return hooks without a note of each call: who dies is run again, with them."""
-    return Hooks(stop_requested=child.asked, interruptible=child.interruptible, begun=child.begun)
+
+    def assembled(_system: System, _manifest: object) -> None:
+        child.loads = False
+
+    return Hooks(
+        assembled=assembled,
+        stop_requested=child.asked,
+        interruptible=child.interruptible,
+        begun=child.begun,
+    )
 
 
 def _hooks(child: Child, observer: Observer | None, keep_going: bool) -> Hooks:
     link, trace = child.link, child.call_trace
 
     def assembled(system: System, manifest: dict[str, Any]) -> None:
+        child.loads = False
         for number, part in enumerate(system.parts.values()):
             part.instance = trace.traced(part.instance, number)
         link.send("assembled", manifest)

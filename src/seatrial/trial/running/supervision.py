@@ -32,7 +32,7 @@ from .call_trace import (
     Limits,
 )
 from .forked import Forked
-from .hooks import BeyondLimitError, Hooks, StoppedError
+from .hooks import BeyondLimitError, Hooks, InterruptedRun, StoppedError
 from .keeper import ASKED_S
 from .link import Frame
 from .measuring import Measured, measure_trial
@@ -246,7 +246,7 @@ class Supervisor:
 
     def _raise(self, kind: str, text: str) -> NoReturn:
         if kind == KeyboardInterrupt.__name__:
-            raise KeyboardInterrupt
+            raise InterruptedRun
         raise _ERRORS.get(kind, SimulationError)(text)
 
     def _shown(self, out: Path | None) -> Path:
