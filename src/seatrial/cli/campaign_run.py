@@ -17,6 +17,7 @@ from ..trial.campaigns.further_page import write_further_page
 from ..trial.campaigns.in_folders import run_campaign
 from ..trial.campaigns.sweep import How as SweepHow
 from ..trial.campaigns.sweep import keep_named
+from ..trial.campaigns.twice import First, check_repeatable, sample
 from ..trial.reports.campaign_report import write_campaign_report, write_case_report
 from ..trial.reports.playing import play
 from ..trial.running.hooks import Hooks
@@ -27,6 +28,7 @@ from .show import console, print_case, print_notes, run_entry
 from .statuses import FAILED
 from .stopping import stoppable
 from .table_run import run_table
+from .twice import exit_unless, repeat
 from .watch import Watch
 
 
@@ -41,10 +43,13 @@ class How:
     cluster: str | None
     keep: str | None
     keep_going: bool
+    twice: bool
 
 
 def run_cases(campaign: Campaign, out: Path | None, how: How, leaves: Leaves) -> None:
     """Run a campaign into its table, or each case into a folder. Raises InputError."""
+    for trial in campaign.trials if how.twice else ():
+        check_repeatable(trial)
     print_notes([f"{trial} is left out: {why}" for trial, why in campaign.left_out.items()])
     if how.keep is not None or how.cluster is not None or campaign.has_table:
         if campaign.file.page is not None:
@@ -53,7 +58,7 @@ def run_cases(campaign: Campaign, out: Path | None, how: How, leaves: Leaves) ->
             )
         keep = keep_named(how.keep, "--keep")
         sweep = SweepHow(how.engine, how.jobs, how.cluster, keep, how.resume, how.rerun_changed)
-        run_table(campaign, out, sweep, junit=leaves.junit, report=leaves.report)
+        run_table(campaign, out, sweep, junit=leaves.junit, report=leaves.report, twice=how.twice)
     else:
         _run_folders(campaign, out, how, leaves)
 
@@ -100,13 +105,19 @@ def _run_folders(campaign: Campaign, out: Path | None, how: How, leaves: Leaves)
         }
         leaves.write_page(lambda: write_campaign_report(folder), results)
         failed = _further_page(folder) if leaves.report else []
-    whole = sum(result.status != "stopped" for result in results)
+        whole = sum(result.status != "stopped" for result in results)
+        is_same = True
+        if how.twice and whole == len(cases):
+            chosen = [finished[number] for number in sample(whole)]
+            firsts = [First(case.name, case.trial, result.folder) for case, result in chosen]
+            is_same = repeat(firsts, how.engine, stop)
     if whole < len(cases):
         raise SimulationError(
             f"stopped; {whole} of {len(cases)} cases came to an end: "
             f"--out {folder} --resume goes on"
         )
     exit_with(results)
+    exit_unless(is_same)
     if failed:
         raise typer.Exit(FAILED)
 

@@ -13,6 +13,7 @@ from ..plugins import service
 from ..system.fault_entry import read_fault
 from ..system.system import Engine
 from ..trial.campaigns.campaign import load_campaign
+from ..trial.campaigns.twice import First, check_repeatable
 from ..trial.files.limit_entry import NONE, limits_of
 from ..trial.files.trial import Trial, load_trial
 from ..trial.reports.playing import play
@@ -54,9 +55,11 @@ from .run_options import (
     Record,
     RerunChanged,
     Resume,
+    Twice,
 )
 from .show import print_notes, print_reachable, print_verdicts, run_entry
 from .stopping import stoppable
+from .twice import exit_unless, repeat
 from .watch import Watch
 
 
@@ -92,11 +95,12 @@ def run(
     keep: KeepName = None,
     no_report: NoReport = False,
     limit: Limit = None,
+    twice: Twice = False,
     keep_going: KeepGoing = False,
 ) -> None:
     """Run a trial, a campaign of trials, or a vehicle that sets out, and say what holds."""
     chosen = engine_named(engine)
-    _allow(hardware, network, keep_going)
+    _allow(hardware, network, keep_going, twice)
     limits = limits_of(limit or [], "--limit")
     changes = changes_of(settings, choices, vehicle, autopilot)
     pace = {"factor": real_time, "overrun": overrun}
@@ -117,7 +121,7 @@ def run(
         for refusal, given in of_trials.items():
             if given:
                 raise InputError(refusal)
-        how = How(chosen, jobs, resume, rerun_changed, cluster, keep, keep_going)
+        how = How(chosen, jobs, resume, rerun_changed, cluster, keep, keep_going, twice)
         campaign = load_campaign(trial, changes, limits)
         run_cases(campaign, out, how, leaves)
         return
@@ -130,11 +134,15 @@ def run(
     loaded = _paced(loaded, pace).recording(record, "--record").limited(limits, "--limit")
     if hardware and loaded.limits.call == NONE:
         raise InputError("limit.call = none does not go with --hardware: a device needs a limit")
-    _run_trial(loaded, out, chosen, page, leaves, keep_going)
+    if twice:
+        check_repeatable(loaded)
+    _run_trial(loaded, out, chosen, page, leaves, keep_going, twice=twice)
 
 
-def _allow(hardware: bool, network: bool, keep_going: bool) -> None:
+def _allow(hardware: bool, network: bool, keep_going: bool, twice: bool) -> None:
     """Allow devices and other hosts. Raises InputError for options that need devices."""
+    if twice and hardware:
+        raise InputError("--twice does not go with --hardware: no two runs with a device are alike")
     if keep_going and not hardware:
         raise InputError("--keep-going goes with --hardware: a simulation goes on in any case")
     if hardware:
@@ -150,6 +158,8 @@ def _run_trial(
     page: Any | None,
     leaves: Leaves,
     keep_going: bool,
+    *,
+    twice: bool,
 ) -> None:
     print_notes(trial.notes)
     with stoppable() as stop:
@@ -170,7 +180,10 @@ def _run_trial(
         answer.result = {"trial": trial.name, "runs": [run_entry(result)]}
         leaves.write_junit([(trial.name, result)])
         leaves.write_page(lambda: write_report(result.folder, play=play), [result])
+        first = First(trial.name, trial, result.folder)
+        is_same = not twice or result.status == "stopped" or repeat([first], engine, stop)
     exit_with([result])
+    exit_unless(is_same)
 
 
 def _paced(trial: Trial, pace: dict[str, Any]) -> Trial:

@@ -68,6 +68,14 @@ KeepGoing = Annotated[
     bool,
     typer.Option("--keep-going", help="With --hardware: go on without a link that is lost."),
 ]
+Twice = Annotated[
+    bool,
+    typer.Option(
+        "--twice",
+        help="Repeat the run, or five cases of a campaign, and name what differs; status 1 if "
+        "anything does.",
+    ),
+]
 Cluster = Annotated[
     str | None,
     typer.Option(

@@ -9,15 +9,18 @@ from rich.markup import escape
 
 from ..errors import InputError, SimulationError
 from ..trial.campaigns.campaign import Campaign
-from ..trial.campaigns.cases import Case
+from ..trial.campaigns.case_list import Cases
+from ..trial.campaigns.cases import Case, case_folder
 from ..trial.campaigns.ended import Ended
 from ..trial.campaigns.page import write_table_page
 from ..trial.campaigns.sweep import How, Summary, run_sweep
+from ..trial.campaigns.twice import First, sample
 from ..trial.running.hooks import Hooks
 from .answer import answer
 from .show import console, print_notes
 from .statuses import FAILED
 from .stopping import stoppable
+from .twice import exit_unless, repeat
 from .watch import Watch
 
 _SHOWN = {"pass": ("green", "PASS"), "fail": ("red", "FAIL"), "undecided": ("yellow", "UNDECIDED")}
@@ -32,11 +35,13 @@ def run_table(
     *,
     junit: Path | None,
     report: bool,
+    twice: bool,
 ) -> None:
     """Run a campaign into its table, and say what came of it."""
     if junit is not None:
         raise InputError("--junit works with a campaign whose every case leaves a folder")
-    planned = len(campaign.cases())
+    cases = campaign.cases()
+    planned = len(cases)
     with stoppable() as stop, Watch(campaign.read_from.name) as watch:
         watch.expect(planned)
         failed = 0
@@ -63,6 +68,22 @@ def run_table(
     if failed > _SAID:
         console.print(f"... and {failed - _SAID} more that failed")
     _say(campaign, summary, page)
+    is_same = True
+    if twice and summary.whole:
+        with stoppable() as stop:
+            is_same = repeat(_firsts(cases, summary), how.engine, stop)
+    _exit_with(summary)
+    exit_unless(is_same)
+
+
+def _firsts(cases: Cases, summary: Summary) -> list[First]:
+    """Return the cases that are repeated."""
+    firsts = []
+    for number in sample(summary.ended):
+        case = cases[number]
+        folder = summary.folder / case_folder(number + 1, case)
+        firsts.append(First(case.name, case.trial, folder if folder.is_dir() else None))
+    return firsts
 
 
 def _print_failed(case: Case, ended: Ended) -> None:
@@ -97,6 +118,10 @@ def _say(campaign: Campaign, summary: Summary, page: Path | None) -> None:
             f"stopped; {summary.ended} of {summary.planned} cases came to an end: "
             f"--out {folder} --resume goes on"
         )
+
+
+def _exit_with(summary: Summary) -> None:
+    """End with the status of a campaign. Raises SimulationError, typer.Exit."""
     if summary.accepted:
         if any(each.verdict != "pass" for each in summary.accepted):
             raise typer.Exit(FAILED)
