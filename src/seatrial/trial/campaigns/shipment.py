@@ -13,9 +13,10 @@ from functools import lru_cache
 from pathlib import Path, PurePosixPath
 
 from ...errors import InputError
+from ..records.deciding import files_in
 from ..records.program import program
 from .campaign import Campaign, load_campaign
-from .needed import files_in, needed_files
+from .needed import needed_files
 
 MOST_BYTES = 200_000_000
 

@@ -19,6 +19,7 @@ from typing import Any, get_args
 from ...errors import InputError, unknown
 from ...shipped import provided_folders
 from ...system.system import Engine
+from ..records.identity import IDENTITY, Changes, Identity
 from ..records.run_schema import CAMPAIGN, checked_json
 from ..running.hooks import Hooks
 from ..running.measuring import Measured
@@ -34,7 +35,7 @@ from .columns import columns_of
 from .ended import Ended
 from .ended_log import ENDED_LOG, EndedLog, ended_cases
 from .evaluator import Keep, Plan
-from .identity import IDENTITY, Changes, Identity, changes_since, identity_of
+from .identity import changes_since, identity_of
 from .sampled_checks import check
 from .shipment import unpack_folder
 from .table import RESULTS, Tables, arrow, read_rows
