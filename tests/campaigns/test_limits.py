@@ -73,12 +73,28 @@ def test_a_campaigns_limit_stands_in_place_of_its_trials_and_the_command_lines_o
     path = write(
         tmp_path, "run", 'limit = { wall = "2 s" }', 'limit = { wall = "9 s", call = "3 s" }'
     )
-    of_case = load_campaign(str(path)).cases()[0].trial.limits
+    of_case = load_campaign(str(path)).cases()[0].trial.file.limit
     assert (of_case.wall_s, of_case.call_s, of_case.memory_bytes) == (2.0, 3.0, float("inf"))
     changed = load_campaign(str(path), limit={"wall": "none", "memory": "2 KiB"})
     for campaign in (changed, unpacked(packed(changed))[0]):  # as a worker of a cluster has it
-        of_case = campaign.cases()[0].trial.limits
+        of_case = campaign.cases()[0].trial.file.limit
         assert (of_case.wall_s, of_case.call_s, of_case.memory_bytes) == (float("inf"), 3.0, 2048)
+
+
+@pytest.mark.parametrize("keep", ["", 'keep = "none"'])
+def test_a_case_that_is_beyond_its_limit_as_it_loads_is_a_failed_one(tmp_path, keep):
+    path = write(tmp_path, "run", "")
+    path.write_text(path.read_text().replace('keep = "none"', keep), "utf-8")
+    slow = "def __init__(self, *own, **named):\n        super().__init__(*own, **named)\n"
+    text = GREEDY.replace("def start(", f"{slow}        time.sleep(1.0)\n\n    def start(")
+    (tmp_path / "case.py").write_text(text, "utf-8")
+    limit = ("--limit", "wall=200 ms", "--engine", "direct", "--no-report", "--out", "out")
+    done = command("run", "campaign.toml", *limit, "--jobs", "1", cwd=tmp_path)
+    assert done.returncode == 3
+    assert "0 of 3 cases pass" in done.stdout
+    assert (
+        "the loading of case (case.py:Case): beyond its limit of 0.2 s" in done.stdout + done.stderr
+    )
 
 
 def test_cases_with_folders_have_limits_too(tmp_path):

@@ -132,7 +132,7 @@ def run(
     loaded = load_trial(trial, changes=changes, origin="--set")
     loaded = loaded.failing([read_fault(text, "--fault") for text in faults or []], "--fault")
     loaded = _paced(loaded, pace).recording(record, "--record").limited(limits, "--limit")
-    if hardware and loaded.limits.call == NONE:
+    if hardware and loaded.file.limit.call == NONE:
         raise InputError("limit.call = none does not go with --hardware: a device needs a limit")
     if twice:
         check_repeatable(loaded)

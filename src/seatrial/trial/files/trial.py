@@ -20,7 +20,6 @@ from ...system.system import System
 from ...system.values import Setting
 from ..criteria.criteria import Criterion, parse
 from .fault_keys import PREFIX, with_fault_keys
-from .limit_entry import LimitEntry
 from .scenario import Acted, Scenario, events_of, read_scenario
 from .seabed_entry import set_seabed, water_depth
 from .surroundings import GROUPS, SeaEntry, set_surroundings
@@ -67,11 +66,6 @@ class Trial:
     def name(self) -> str:
         """Name of the trial."""
         return self.read_from.name
-
-    @property
-    def limits(self) -> LimitEntry:
-        """Limits of its run."""
-        return self.file.limit
 
     @property
     def start_ns(self) -> int:
@@ -216,7 +210,7 @@ class Trial:
 
     def limited(self, given: Mapping[str, Any], origin: str) -> Trial:
         """Return the trial with limits of its run replaced. Raises InputError."""
-        limit = self.limits.with_(given, origin)
+        limit = self.file.limit.with_(given, origin)
         return replace(self, file=self.file.model_copy(update={"limit": limit}))
 
     def changed(self, changes: Mapping[str, Any], origin: str) -> Trial:

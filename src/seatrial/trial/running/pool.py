@@ -17,7 +17,7 @@ from ...model.component import seconds
 from ...system.system import Engine
 from ..files.trial import Trial
 from .forked import SLICE_MS
-from .hooks import Hooks, InterruptedRun, StoppedError
+from .hooks import BeyondLimitError, Hooks, InterruptedRun, StoppedError
 from .run import Result
 from .supervised import Page, no_page
 from .supervision import Order, Outcome, Supervisor
@@ -103,7 +103,9 @@ class Pool:
                 if isinstance(outcome, StoppedError):
                     self._stopping = True
                     continue
-                if isinstance(outcome, Exception):
+                if isinstance(outcome, BeyondLimitError):
+                    results[number] = Result(folders[number], "failed", str(outcome), [], [])
+                elif isinstance(outcome, Exception):
                     if number not in results:
                         raise outcome
                     _note_page(results[number], outcome)

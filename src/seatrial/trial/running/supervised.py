@@ -69,7 +69,7 @@ def _carried_out(
             page(out)
             return ["done", {}]
         trial = trials[number] if changes is None else trials[number].changed(*changes)
-        is_noted = what != "measure" or trial.limits.is_of_run
+        is_noted = what != "measure" or trial.file.limit.is_of_run
         hooks = _hooks(*seen) if is_noted else _unnoted(seen[0])
         if what == "check":
             return ["done", {"alone": check_trial(trial, engine, hooks)}]

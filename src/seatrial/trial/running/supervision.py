@@ -125,7 +125,8 @@ class Supervisor:
         self._is_free = folder is not None and (
             not any(folder.iterdir()) if folder.is_dir() else not folder.exists()
         )
-        self._say_unwatched(self._trials[number].limits)
+        trial = self._trials[number]
+        self._say_unwatched(trial.file.limit)
         if _IN_PROCESS:
             return
         order = what, number, None if folder is None else str(folder), changes
@@ -136,7 +137,7 @@ class Supervisor:
             how = self._engine, self._page, hooks.observer, hooks.keep_going
             self._forked = Forked(partial(serve, self._trials, *how), *order)
         self._busy = True
-        self._forked.call_trace.limits = _limits(self._trials[number])
+        self._forked.call_trace.limits = _limits(trial)
         self._forked.call_trace.devices = int(devices_allowed())
         if not begins:
             self._forked.link.send(*order)
@@ -273,7 +274,8 @@ class Supervisor:
 
     def _dead_before_start(self) -> SimulationError:
         assert self._forked is not None
-        is_beyond = self._forked.call_trace.end in (BEYOND_WALL, BEYOND_MEMORY)
+        trace = self._forked.call_trace
+        is_beyond = trace.end in (BEYOND_WALL, BEYOND_MEMORY) and trace.runs % 2
         status, error = self._how()
         if status == "stopped":
             return StoppedError(f"stopped before the run began; {error}")
@@ -288,11 +290,15 @@ class Supervisor:
         how, trace = forked.how(), forked.call_trace
         forked.end()
         component, call = trace.entry(list(self._manifest.get("components", [])))
+        is_loading = self._loading and not self._manifest
         if trace.end:
-            error = _killed(trace, component, call)
+            loads = (
+                f"the loading of {self._loading}" if self._loading and not self._manifest else ""
+            )
+            error = _killed(trace, f"{component}: {call}" if component else loads)
         elif component:
             error = f"{component}: the process of the run {how} in {call}"
-        elif self._loading and not self._manifest:
+        elif is_loading:
             error = f"the process of the run {how} while it loaded {self._loading}"
         else:
             error = f"the process of the run {how} between two calls of components"
@@ -306,16 +312,16 @@ class Supervisor:
 
 def _limits(trial: Trial) -> Limits:
     """Return what a run of a trial may take."""
-    written = trial.limits
+    written = trial.file.limit
     limits = IN_REAL_TIME if trial.file.real_time is not None else AT_ANY_PACE
     if written.call_s is not None:
         limits = Limits(*(written.call_s,) * 3)
     return limits._replace(wall=written.wall_s, memory=written.memory_bytes)
 
 
-def _killed(trace: CallTrace, component: str, call: str) -> str:
-    """Return why the keeper has ended the process of a run."""
-    where = f"{component}: {call}" if component else "between two calls of components the run"
+def _killed(trace: CallTrace, where: str) -> str:
+    """Return why the keeper has ended the process of a run, which was ``where``."""
+    where = where or "between two calls of components the run"
     if trace.end == HUNG:
         return f"{where} hung: no progress for {trace.limit(held=True):g} s (limit.call)"
     if trace.end == BEYOND_WALL:
