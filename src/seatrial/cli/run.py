@@ -123,6 +123,7 @@ def run(
                 raise InputError(refusal)
         how = How(chosen, jobs, resume, rerun_changed, cluster, keep, keep_going, twice)
         campaign = load_campaign(trial, changes, limits)
+        _refuse_endless([block.base for block in campaign.cases().blocks], hardware)
         run_cases(campaign, out, how, leaves)
         return
     if jobs is not None or resume or rerun_changed or keep or cluster:
@@ -132,8 +133,7 @@ def run(
     loaded = load_trial(trial, changes=changes, origin="--set")
     loaded = loaded.failing([read_fault(text, "--fault") for text in faults or []], "--fault")
     loaded = _paced(loaded, pace).recording(record, "--record").limited(limits, "--limit")
-    if hardware and loaded.file.limit.call == NONE:
-        raise InputError("limit.call = none does not go with --hardware: a device needs a limit")
+    _refuse_endless([loaded], hardware)
     if twice:
         check_repeatable(loaded)
     _run_trial(loaded, out, chosen, page, leaves, keep_going, twice=twice)
@@ -149,6 +149,12 @@ def _allow(hardware: bool, network: bool, keep_going: bool, twice: bool) -> None
         allow_devices()
     if network:
         allow_network()
+
+
+def _refuse_endless(trials: list[Trial], hardware: bool) -> None:
+    """Raise InputError for calls without a limit where devices are allowed."""
+    if hardware and any(trial.file.limit.call == NONE for trial in trials):
+        raise InputError("limit.call = none does not go with --hardware: a device needs a limit")
 
 
 def _run_trial(
