@@ -224,7 +224,7 @@ def test_a_pilot_is_steered_by_hand(browser, tmp_path: Path) -> None:
         page.get_by_text("Steer autopilot.pilot.guidance", exact=True).click()
         page.get_by_label("by hand").check()
         page.mouse.click(60, 400)  # the scene has the focus
-        for _ in range(5):
+        for _ in range(12):  # five are full ahead: a busy machine may merge some
             page.keyboard.press("w")
             page.wait_for_timeout(300)
         _later(page, _time(page) + 4.0)
