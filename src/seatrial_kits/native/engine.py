@@ -16,8 +16,8 @@ def carry_natively(
 ) -> dict[str, list[str]]:
     """Let native FMUs carry the components of a system whose engine is "native".
 
-    To be called when all parameters are given: texts among them, and waves, current and wind, are
-    built in. They come from the user's cache, and are built if they are not there. What has no C
+    To be called when all parameters are given: texts among them are built in, and waves, current
+    and wind around a plant are those of its parameters then. They come from the user's cache, and are built if they are not there. What has no C
     stays in process; there it is noted why, and returned, components by reason. Raises InputError
     without a compiler.
     """
@@ -57,15 +57,19 @@ def _carry(system: System, part: Part) -> str:
     from seatrial.fmi.loading.load import load_fmu, open_instance
 
     from .cached import native_fmu
+    from .surroundings import surround, surroundings_of
 
     source = find_source(part.fmu, system.rig.components[part.name].scope.folder)
     assert isinstance(source, ComponentSource)
     require_compiler()
     values = {name: given.value for name, given in part.given.items()}
     try:
-        fmu = load_fmu(native_fmu(source, values))
+        around = surroundings_of(source, values)
+        fmu = load_fmu(native_fmu(source, values, surrounded=around is not None))
     except InputError as error:
         return str(error)
     part.instance.free()
     part.instance, part.sha256 = open_instance(fmu, part.name), fmu.sha256
+    if around:
+        surround(part.instance, around)
     return ""

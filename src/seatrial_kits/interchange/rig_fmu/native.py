@@ -65,6 +65,8 @@ def why_not_native(system: System, in_python: Mapping[str, Sequence[str]]) -> li
         if part.name not in known and not part.is_sum and not _is_ours(part):
             what = "isolated" if part.fmu[-4:] != ".fmu" else "an FMU"
             whys.append(f"{part.name}: it is {what}")
+        if getattr(part.instance, "around", None):
+            whys.append(f"{part.name}: waves, current and wind around it are evaluated in Python")
     algorithm = system.rig.file.algorithm
     if algorithm not in choice.ALGORITHMS:
         whys.append(f"the algorithm {algorithm} is not compiled")
