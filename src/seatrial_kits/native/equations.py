@@ -23,27 +23,33 @@ extern const int model_x[], model_x_start[], model_u[], model_p[], model_y[];
 
 typedef struct {{
     double x[STATES + 1];
-    double around[AROUND + 1]; /* at the end of the last step */
 #if AROUND
-    double before[STATES + 1];         /* the states before that step */
-    double met[4][AROUND + 1];         /* evaluations of what surrounds the plant */
-    double span;                       /* the step, s, */
-    long long count;                   /* its sub-steps, */
-    long long steps, done;             /* and steps between the last two evaluations */
+    double around[AROUND];     /* at the end of the last step */
+    double before[STATES + 1]; /* the states before that step */
+    double met[4][AROUND];     /* evaluations of what surrounds the plant */
+    double span;               /* the step, s, */
+    long long count;           /* its sub-steps, */
+    long long steps, done;     /* steps between the last two evaluations, and those taken */
+    int among;                 /* whether anything surrounds it in this run */
 #endif
 }} Memory;
 
 {functions}
 """
 
-_TAKEN = {
-    "still": ("x", "u", "p"),
+_STILL = {
+    "rk4": ("x", "u", "p", "h"),
     "out": ("x", "u", "p"),
     "along": ("x", "u", "p", "dx", "du", "dp"),
-    "rk4": ("x", "u", "p", "h"),
-    "between": ("x", "u0", "u", "u1", "p", "h"),
 }
-"""Arguments of each function; all but the time step are arrays."""
+"""Functions of a plant by their arguments; all but the time step are arrays."""
+_AMONG = {
+    "rates": ("x", "u", "p"),
+    "between": ("x", "u0", "u", "u1", "p", "h"),
+    "out_among": _STILL["out"],
+    "along_among": _STILL["along"],
+}
+"""Those of a plant among waves, current and wind beside them."""
 
 _OWN = ("step", "outputs", "_load", "_publish", "compiled", "advance", "refresh")
 """Methods that `plant.c` has in C: who overrides one is another component."""
@@ -88,25 +94,25 @@ def header(plant: Plant, surrounded: bool) -> str:
         p=_size(plant.parameter_ports),
         y=_size(plant.output_ports),
         max_step=plant.ports["max_step"].offset,
-        functions="\n".join(f"{_declared(kind)};" for kind in _kinds(surrounded)),
+        functions="\n".join(f"{_declared(*each)};" for each in _functions(surrounded).items()),
     )
 
 
 def model(plant: Plant, surrounded: bool) -> str:
     """Return ``model.c``: the equations with the text parameters' values, and the tables.
 
-    ``surrounded`` are a plant's equations in waves, current and wind: `SurroundedPlant` has them.
+    One that is ``surrounded`` has its equations among waves, current and wind beside those without.
     """
     still = plant.compiled()
-    functions = {"rk4": still.rk4, "out": still.out}
+    compiled = {"rk4": still.rk4, "out": still.out, "along": _along(still.out)}
     if surrounded:
         assert isinstance(plant, SurroundedPlant)
         among, between = plant.surrounded()
-        functions = {"still": still.rhs, "between": between, "out": among.out}
-    functions["along"] = _along(functions["out"])
+        compiled |= {"rates": still.rhs, "between": between}
+        compiled |= {"out_among": among.out, "along_among": _along(among.out)}
     generator = ca.CodeGenerator("model.c", {"with_header": False, "main": False})
-    for function in functions.values():
-        generator.add(function)
+    for name, function in compiled.items():
+        generator.add(_named(function, f"casadi_{name}"))
     starts = [plant.ports[f"{p.name}_start"] for p in plant.state_ports]
     own = [
         table("int", "x", _references(plant.state_ports)),
@@ -116,30 +122,36 @@ def model(plant: Plant, surrounded: bool) -> str:
         table("int", "y", _references(plant.output_ports)),
     ]
     text = f'{generator.dump()}\n#include "component.h"\n'
-    calls = [_called(kind, functions[kind]) for kind in _kinds(surrounded)]
+    calls = [_called(name, of, compiled[name]) for name, of in _functions(surrounded).items()]
     return "\n".join([text, *calls, *own, tables(plant, surrounded=surrounded)])
 
 
-def _kinds(surrounded: bool) -> tuple[str, ...]:
-    return ("still", "between", "out", "along") if surrounded else ("rk4", "out", "along")
+def _functions(surrounded: bool) -> dict[str, tuple[str, ...]]:
+    return _STILL | _AMONG if surrounded else _STILL
 
 
-def _declared(kind: str) -> str:
+def _named(function: ca.Function, name: str) -> ca.Function:
+    """Return a function under a name of its own: of two models each has its outputs."""
+    symbols = function.sx_in()
+    return ca.Function(name, symbols, function.call(symbols))
+
+
+def _declared(name: str, arguments: Sequence[str]) -> str:
     """Return the head of a function of C."""
-    taken = ", ".join("double h" if a == "h" else f"const double *{a}" for a in _TAKEN[kind])
-    return f"void model_{kind}({taken}, double *to)"
+    taken = ", ".join("double h" if a == "h" else f"const double *{a}" for a in arguments)
+    return f"void model_{name}({taken}, double *to)"
 
 
-def _called(kind: str, function: ca.Function) -> str:
+def _called(name: str, arguments: Sequence[str], function: ca.Function) -> str:
     """Return a function of C that calls CasADi's."""
     sizes = {of: max(1, getattr(function, f"sz_{of}")()) for of in ("arg", "res", "iw", "w")}
-    given = ", ".join("&h" if a == "h" else a for a in _TAKEN[kind])
+    given = ", ".join("&h" if a == "h" else a for a in arguments)
     return f"""\
-{_declared(kind)} {{
+{_declared(name, arguments)} {{
     const double *arguments[{sizes["arg"]}] = {{{given}}};
     double *results[{sizes["res"]}] = {{to}}, work[{sizes["w"]}];
     casadi_int places[{sizes["iw"]}];
-    {function.name()}(arguments, results, places, work, 0);
+    casadi_{name}(arguments, results, places, work, 0);
 }}
 """
 

@@ -16,11 +16,20 @@ static void publish(double *values, const int *references, int count, const doub
     for (int i = 0; i < count; i++) values[references[i]] = from[i];
 }
 
-/* Inputs, what surrounds the plant behind them, and parameters. */
 static void load(const State *state, double *u, double *p) {
     gather(state->values, model_u, INPUTS, u);
     gather(state->values, model_p, PARAMETERS, p);
-    memcpy(u + INPUTS, state->memory.around, AROUND * sizeof *u);
+}
+
+/* ------------------------------------------------------------------ with nothing around */
+
+static void advance_still(State *state, double h, long long count) {
+    double u[INPUTS + 1], p[PARAMETERS + 1], next[STATES + 1];
+    load(state, u, p);
+    for (long long i = 0; i < count; i++) {
+        model_rk4(state->memory.x, u, p, h / (double)count, next);
+        memcpy(state->memory.x, next, STATES * sizeof *next);
+    }
 }
 
 #if AROUND /* ------------------------------------------------- among waves, current and wind */
@@ -31,27 +40,32 @@ static void load(const State *state, double *u, double *p) {
 #define EXPORTED __attribute__((visibility("default")))
 #endif
 
+/* Let it meet surroundings from its next start on; NULL: nothing. */
 EXPORTED void seatrial_surround(void *component, Surroundings met) {
-    ((Instance *)component)->met = met;
+    Instance *self = component;
+    self->met = met;
+    self->state.restart = self->state.stale = 1;
+}
+
+static void load_among(const State *state, double *u, double *p) {
+    load(state, u, p);
+    memcpy(u + INPUTS, state->memory.around, AROUND * sizeof *u);
 }
 
 static void meet(Instance *self, double t, const double *x, double *around) {
-    if (!self->met)
-        fail(self, "%s: waves, current and wind around it come from seatrial's master alone",
-             self->name);
-    else if (!self->met(t, x, around))
-        fail(self, "%s: there is no value for what surrounds it at t = %s s", self->name,
-             shown(self, t));
+    if (self->met && self->met(t, x, around)) return;
+    fail(self, "%s: there is no value for what surrounds it at t = %s s", self->name, shown(self, t));
 }
 
 /* The plant without surroundings says what came before: it only looks ahead. */
 static void start_among(Instance *self, double t) {
-    State *state = &self->state;
-    Memory *memory = &state->memory;
-    double u[INPUTS + AROUND], p[PARAMETERS + 1], dx[STATES + 1];
+    Memory *memory = &self->state.memory;
+    double u[INPUTS + 1], p[PARAMETERS + 1], dx[STATES + 1];
+    memory->among = self->met != NULL;
+    if (!memory->among) return;
     meet(self, t, memory->x, memory->around);
-    load(state, u, p);
-    model_still(memory->x, u, p, dx);
+    load(&self->state, u, p);
+    model_rates(memory->x, u, p, dx);
     for (int i = 0; i < STATES; i++) memory->before[i] = memory->x[i] - dx[i];
     memory->span = 1.0;
     memory->count = memory->steps = memory->done = 0;
@@ -91,7 +105,7 @@ static void around_at(const Memory *memory, long long half, double *to) {
                 shares[2] * memory->met[2][i] + shares[3] * memory->met[3][i];
 }
 
-static void advance(Instance *self, double t, double h, long long count) {
+static void advance_among(Instance *self, double t, double h, long long count) {
     State *state = &self->state;
     Memory *memory = &state->memory;
     double u[3][INPUTS + AROUND], p[PARAMETERS + 1], next[STATES + 1];
@@ -110,22 +124,34 @@ static void advance(Instance *self, double t, double h, long long count) {
     memory->done++;
 }
 
-#else /* --------------------------------------------------------- with nothing around */
-
-static void start_among(Instance *self, double t) { (void)self, (void)t; }
-
-static void advance(Instance *self, double t, double h, long long count) {
-    State *state = &self->state;
-    double u[INPUTS + 1], p[PARAMETERS + 1], next[STATES + 1];
-    (void)t;
-    load(state, u, p);
-    for (long long i = 0; i < count; i++) {
-        model_rk4(state->memory.x, u, p, h / (double)count, next);
-        memcpy(state->memory.x, next, STATES * sizeof *next);
-    }
+static int publish_among(State *state) {
+    double u[INPUTS + AROUND], p[PARAMETERS + 1], y[OUTPUTS + 1];
+    if (!state->memory.among) return 0;
+    load_among(state, u, p);
+    model_out_among(state->memory.x, u, p, y);
+    publish(state->values, model_y, OUTPUTS, y);
+    return 1;
 }
 
+static int derive_among(State *state, const double *dx, const double *du, const double *dp, double *dy) {
+    double u[INPUTS + AROUND], p[PARAMETERS + 1], all[INPUTS + AROUND] = {0.0};
+    if (!state->memory.among) return 0;
+    load_among(state, u, p);
+    memcpy(all, du, INPUTS * sizeof *du); /* the surroundings are held */
+    model_along_among(state->memory.x, u, p, dx, all, dp, dy);
+    return 1;
+}
+
+#define IS_AMONG(self) ((self)->state.memory.among)
+#else
+#define IS_AMONG(self) 0
+#define start_among(self, t) ((void)(t))
+#define advance_among(self, t, h, count) ((void)(t))
+#define publish_among(state) 0
+#define derive_among(state, dx, du, dp, dy) 0
 #endif
+
+/* ------------------------------------------------------------------ as a component */
 
 void model_start(Instance *self, double t) {
     gather(self->state.values, model_x_start, STATES, self->state.memory.x);
@@ -134,15 +160,17 @@ void model_start(Instance *self, double t) {
 
 void model_step(Instance *self, double t, double h) {
     const double parts = ceil(h / self->state.values[MAX_STEP] - 1e-9);
-    advance(self, t, h, parts > 1.0 ? (long long)parts : 1);
+    const long long count = parts > 1.0 ? (long long)parts : 1;
+    if (IS_AMONG(self)) advance_among(self, t, h, count);
+    else advance_still(&self->state, h, count);
 }
 
 void model_outputs(Instance *self, double t) {
     (void)t;
     State *state = &self->state;
-    double u[INPUTS + AROUND + 1], p[PARAMETERS + 1], y[OUTPUTS + 1];
+    double u[INPUTS + 1], p[PARAMETERS + 1], y[OUTPUTS + 1];
     publish(state->values, model_x, STATES, state->memory.x);
-    if (OUTPUTS == 0) return;
+    if (OUTPUTS == 0 || publish_among(state)) return;
     load(state, u, p);
     model_out(state->memory.x, u, p, y);
     publish(state->values, model_y, OUTPUTS, y);
@@ -151,16 +179,17 @@ void model_outputs(Instance *self, double t) {
 /* States are held over an instant; before the run they are the start values. */
 int model_derivative(Instance *self, const double *seeds, double *along) {
     State *state = &self->state;
-    double u[INPUTS + AROUND + 1], p[PARAMETERS + 1];
-    double dx[STATES + 1] = {0.0}, du[INPUTS + AROUND + 1] = {0.0}, dp[PARAMETERS + 1];
-    double dy[OUTPUTS + 1];
+    double u[INPUTS + 1], p[PARAMETERS + 1];
+    double dx[STATES + 1] = {0.0}, du[INPUTS + 1], dp[PARAMETERS + 1], dy[OUTPUTS + 1];
     if (state->phase != RUNNING) gather(seeds, model_x_start, STATES, dx);
     publish(along, model_x, STATES, dx);
     if (OUTPUTS == 0) return 1;
-    load(state, u, p);
     gather(seeds, model_u, INPUTS, du);
     gather(seeds, model_p, PARAMETERS, dp);
-    model_along(state->memory.x, u, p, dx, du, dp, dy);
+    if (!derive_among(state, dx, du, dp, dy)) {
+        load(state, u, p);
+        model_along(state->memory.x, u, p, dx, du, dp, dy);
+    }
     publish(along, model_y, OUTPUTS, dy);
     return 1;
 }

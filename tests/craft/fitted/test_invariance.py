@@ -66,6 +66,7 @@ def off(carried, still, t, water):
 UNIT = st.floats(-1, 1)
 
 
+@pytest.mark.slow
 @settings(max_examples=100, deadline=None)
 @given(
     water=st.tuples(UNIT, UNIT, st.just(0.0)),  # the wind has no third component

@@ -122,6 +122,7 @@ NEW = {
 }
 
 
+@pytest.mark.slow
 def test_new_writes_what_runs_at_once(tmp_path):
     need("host")
     done = seatrial("sketch", "new", "my-helm_2", cwd=tmp_path)

@@ -71,6 +71,7 @@ def test_exact_readings_give_back_what_made_them(turns):
     assert np.all(found.scales < 1e-5)
 
 
+@pytest.mark.slow
 def test_with_noise_within_three_of_the_deviations_it_states(turns):
     commands, readings = turns
     noisy = readings + NOISE * np.random.default_rng(5).normal(size=readings.shape)

@@ -51,6 +51,7 @@ def test_held_out_data_is_not_seen(pool, surge):
     assert not other.accepted
 
 
+@pytest.mark.slow
 def test_a_second_log_checks(pool, surge):
     text = EXPERIMENT.replace('log = "pool.csv"', 'log = "pool.csv"\ntest_log = "other.csv"')
     path = pool(text=text)
@@ -150,6 +151,7 @@ def identify(*arguments, cwd):
     return seatrial("identify", *arguments, cwd=cwd)
 
 
+@pytest.mark.slow
 def test_the_command(pool, tmp_path):
     pool(text=BASE)
     done = identify("pool.toml", "--out", "out", cwd=tmp_path)

@@ -10,7 +10,7 @@ import casadi as ca
 import numpy as np
 import pytest
 
-from seatrial.errors import InputError, SimulationError
+from seatrial.errors import InputError
 from seatrial.fmi.compiler import HERE, library_here
 from seatrial.fmi.components.source import find_source
 from seatrial.fmi.direct import DirectInstance
@@ -135,20 +135,33 @@ def test_one_fmu_serves_every_sea() -> None:
         for each in (python, native):
             each.step(0.0, 0.1)
         flows = [each.reader(["flow"])()[0] for each in (python, native)]
-        assert flows[0] == flows[1] == pytest.approx(
-            values["swell"] * math.cos(values["rate"] * 0.1), rel=1e-3
+        assert (
+            flows[0]
+            == flows[1]
+            == pytest.approx(values["swell"] * math.cos(values["rate"] * 0.1), rel=1e-3)
         )
         native.free()
 
 
-def test_a_host_without_surroundings_is_refused(tmp_path: Path) -> None:
+def test_with_nothing_around_it_is_the_still_one() -> None:
+    values = {"slip": 0.3, "x_start.e": 2.0}
     source = find_source(f"{__file__}:Cork", Path.cwd())
-    native = open_instance(load_fmu(native_fmu(source, WEATHER, surrounded=True)), "cork")
-    native.set_start(WEATHER)
-    with pytest.raises(SimulationError, match="come from seatrial's master alone"):
-        native.initialise(0.0, 1.0)
-        native.begin()
-    native.free()
+    among = open_instance(load_fmu(native_fmu(source, values, surrounded=True)), "cork")
+    python = DirectInstance(Cork("cork"), compiles=False)
+    found = []
+    for each in (python, among):
+        each.set_start(values)
+        each.initialise(0.0, 1.0)
+        each.begin()
+        each.step(0.0, 0.5)
+        found.append(each.reader(["x.n", "x.e", "flow"])())
+        each.free()
+    assert found[0] == found[1]
+    assert found[0][1] == pytest.approx(2.0 * math.exp(-0.15), rel=1e-9)
+
+
+def test_an_fmu_for_any_host_has_no_weather(tmp_path: Path) -> None:
+    source = find_source(f"{__file__}:Cork", Path.cwd())
     with pytest.raises(InputError, match="still water and air"):
         build_native_fmu(source, tmp_path / "cork.fmu", (HERE,), WEATHER, library_here)
     assert list(tmp_path.iterdir()) == []

@@ -68,6 +68,7 @@ def test_an_output_that_does_not_vary_has_no_indices():
     assert np.isnan(found.total).all()
 
 
+@pytest.mark.slow
 def test_a_trial_s_indices_are_those_of_its_closed_form(asked, tmp_path):
     """Of a sum of normal keys each has its share of the variance: 1, 4 and 1 of 6."""
     varied = '[ask.vary]\n"form.a" = { normal = ["3 m", "1 m"] }\n"form.b" = { normal = ["1 kg", "2 kg"] }\n"form.c" = { normal = [0, 1] }\n'

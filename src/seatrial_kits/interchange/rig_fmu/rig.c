@@ -37,6 +37,7 @@ typedef struct {
     State state;
     Master master;
     Operation operations[OPERATIONS + 1];
+    Times times; /* of nobody: nothing is timed */
     fmi2Component components[NODES + 1];
     volatile int32_t said;
     fmi2CallbackLogger log;
@@ -58,6 +59,8 @@ static void say(Rig *self, const char *format, ...) {
 #include "state.inc"
 
 /* ------------------------------------------------------------------ life */
+
+fmi2Component rig_component(fmi2Component c, int node) { return ((Rig *)c)->components[node]; }
 
 /* Return to before the initialisation, with the values that the rig gives. */
 static fmi2Status begin_anew(Rig *self) {
@@ -97,7 +100,6 @@ void fmi2FreeInstance(fmi2Component c) {
 fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String guid, fmi2String resources,
                               const fmi2CallbackFunctions *functions, fmi2Boolean visible,
                               fmi2Boolean logging) {
-    static Times times; /* of nobody: nothing is timed */
     (void)resources, (void)visible, (void)logging; /* errors are always reported */
     Rig *self = calloc(1, sizeof *self);
     if (!self) return NULL;
@@ -112,7 +114,7 @@ fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String guid, f
         fmi2FreeInstance(self);
         return NULL;
     }
-    for (int i = 0; i < OPERATIONS; i++) prepare(self, self->operations + i, rig_rows + i, &times);
+    for (int i = 0; i < OPERATIONS; i++) prepare(self, self->operations + i, rig_rows + i);
     self->master.signals = self->state.signals;
     self->master.step_ns = STEP_NS;
     self->master.said = &self->said;

@@ -42,6 +42,9 @@ typedef struct {
     const char *text;
 } Given;
 
+/* A component of an instance, as its own functions take it. */
+fmi2Component rig_component(fmi2Component rig, int node);
+
 extern const Node rig_nodes[];
 extern const Row rig_rows[];
 extern const Variable rig_variables[];
