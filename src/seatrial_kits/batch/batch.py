@@ -12,10 +12,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from seatrial.api.simulation import assembled, described
 from seatrial.api.signal import Signal
+from seatrial.api.simulation import assembled, described
 from seatrial.errors import InputError, SimulationError
-
 from seatrial_kits.native.surroundings import NOTHING, Met
 
 from .program import program_of
@@ -26,7 +25,7 @@ MOST_THREADS = 64
 
 
 class BatchState:
-    """The states of all copies at one moment; `Batch.save` makes one, which restores itself alone."""
+    """The states of all copies at one moment; `Batch.save` makes one."""
 
     def __init__(self, batch: Batch, states: Any, steps: NDArray[np.int64]) -> None:
         self.batch, self.states, self.steps = batch, states, steps
@@ -66,9 +65,7 @@ class Batch:
         self.count, self.threads = count, threads
         self.seeds = self._seeds(seed)
         """Of each copy."""
-        self.system = assembled(
-            rig, variant=variant, engine="native", step=step, choices=choices
-        )
+        self.system = assembled(rig, variant=variant, engine="native", step=step, choices=choices)
         try:
             of_copies = give_built_in(self.system, set or {})
             program = program_of(self.system)
@@ -95,7 +92,7 @@ class Batch:
     @property
     def time(self) -> Floats:
         """Simulated time of each copy, s, shape (count,)."""
-        return self._times()[0] * self.step_size
+        return np.asarray(self._times()[0] * self.step_size, dtype=np.float64)
 
     def step(self, count: int = 1) -> None:
         """Let every copy that has not failed take ``count`` communication steps."""
@@ -265,7 +262,8 @@ class Batch:
         chosen = np.ascontiguousarray(mask)
         if chosen.dtype != bool or chosen.shape != (self.count,):
             raise InputError(
-                f"mask: found shape {chosen.shape} of {chosen.dtype}; {self.count} truths are needed"
+                f"mask: found shape {chosen.shape} of {chosen.dtype}; {self.count} truths are "
+                "needed"
             )
         return chosen
 

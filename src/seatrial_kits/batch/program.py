@@ -8,6 +8,7 @@ import sys
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from seatrial.errors import InputError
 from seatrial.fmi.cache import cache_folder, write_named
@@ -61,7 +62,7 @@ def _loaded(path: Path) -> ctypes.CDLL:
     found = ctypes.CDLL(str(path))
     found.batch_new.restype, found.batch_new.argtypes = _POINTER, [_COUNT]
     found.batch_free.argtypes = [_POINTER]
-    values = [_POINTER, _POINTER, _POINTER, _COUNT, _POINTER]
+    values: list[Any] = [_POINTER, _POINTER, _POINTER, _COUNT, _POINTER]
     found.batch_start.argtypes = found.batch_set.argtypes = values
     found.batch_get.argtypes = [_POINTER, _POINTER, _COUNT, _POINTER]
     found.batch_step.argtypes = [_POINTER, _COUNT, _COUNT]
@@ -71,6 +72,16 @@ def _loaded(path: Path) -> ctypes.CDLL:
     found.batch_save.argtypes = found.batch_free_states.argtypes = [_POINTER, _POINTER]
     found.batch_restore.argtypes = [_POINTER, _POINTER, _POINTER, _POINTER]
     found.batch_surround.argtypes = [_POINTER, _COUNT, _COUNT, MET]
-    for name in ("surround", "start", "set", "get", "step", "times", "restore", "free", "free_states"):
+    for name in (
+        "surround",
+        "start",
+        "set",
+        "get",
+        "step",
+        "times",
+        "restore",
+        "free",
+        "free_states",
+    ):
         getattr(found, f"batch_{name}").restype = None
     return found

@@ -17,7 +17,7 @@ from seatrial.fmi.instance import Variable
 from seatrial.system.part import Part
 from seatrial.system.paths import joined
 from seatrial.system.system import System
-from seatrial.system.values import from_written, port_names, port_scalars
+from seatrial.system.values import check_limits, from_written, port_names, port_scalars
 from seatrial_kits.native.surroundings import Met, is_surrounded, surroundings_of
 from seatrial_kits.native.tables import is_built_in
 
@@ -37,6 +37,7 @@ class Settings:
         self._rows: dict[str, Floats] = {}
         """What was set, by scalar, each (count,)."""
         self._met: dict[tuple[Any, ...], Met | None] = {}
+        self._seeded: tuple[NDArray[np.int64], dict[str, Floats]] = (np.empty(0, np.int64), {})
 
     # ------------------------------------------------------------------ names
 
@@ -73,7 +74,7 @@ class Settings:
         for whole, scalar in scalars:
             if scalar.causality == "output":
                 raise InputError(f"{call}: {whole} is an output and cannot be set")
-        rows = np.asarray(value) if not isinstance(value, str) else np.empty(())
+        rows: NDArray[Any] = np.array(0.0 if isinstance(value, str) else value)
         if rows.dtype.kind in "fiub" and rows.ndim and rows.shape[0] == self._count:
             wanted = (self._count,) if len(scalars) == 1 else (self._count, len(scalars))
             if rows.shape == wanted:
@@ -85,11 +86,9 @@ class Settings:
                 f"({self._count}, {len(scalars)})"
             )
         presets = part.presets.get(self._port_of(part, scalars), {})
-        found = from_written(
-            as_written(value), [s for _, s in scalars], presets, f"{call}: {name}"
-        )
+        found = from_written(as_written(value), [s for _, s in scalars], presets, f"{call}: {name}")
         return {
-            whole: np.full(self._count, float(found[scalar.name].value))  # type: ignore[arg-type]
+            whole: np.full(self._count, float(found[scalar.name].value))
             for whole, scalar in scalars
         }
 
@@ -103,14 +102,9 @@ class Settings:
         for column, (whole, scalar) in enumerate(scalars):
             for copy in np.flatnonzero(~np.isfinite(numbers[:, column])):
                 raise InputError(f"{origin}: copy {copy} gets {numbers[copy, column]} for {whole}")
-            for limit, beyond in ((scalar.minimum, np.less), (scalar.maximum, np.greater)):
-                for copy in np.flatnonzero(
-                    np.zeros(0) if limit is None else beyond(numbers[:, column], limit)
-                ):
-                    raise InputError(
-                        f"{origin}: copy {copy} gets {numbers[copy, column]!r} for {whole}, "
-                        f"allowed {scalar.minimum} to {scalar.maximum} {scalar.unit}"
-                    )
+            for furthest in {int(numbers[:, column].argmin()), int(numbers[:, column].argmax())}:
+                number = float(numbers[furthest, column])
+                check_limits(scalar, number, f"{origin}: copy {furthest}")
         return {whole: numbers[:, i].copy() for i, (whole, _) in enumerate(scalars)}
 
     def running(self, name: str, value: Any) -> tuple[NDArray[np.uint32], Floats]:
@@ -152,7 +146,9 @@ class Settings:
 
     def rows(self, seeds: NDArray[np.int64]) -> tuple[NDArray[np.uint32], Floats]:
         """Return references and rows of values that copies with these seeds start with."""
-        return self._stacked(self._of_seeds(seeds) | self._rows)
+        if not np.array_equal(seeds, self._seeded[0]):
+            self._seeded = seeds.copy(), self._of_seeds(seeds)
+        return self._stacked(self._seeded[1] | self._rows)
 
     def surroundings(self, mask: NDArray[np.bool_]) -> dict[str, list[Met | None]]:
         """Return what surrounds each plant that can meet weather, in each copy of the mask.

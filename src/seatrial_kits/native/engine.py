@@ -17,10 +17,10 @@ def carry_natively(
     """Let native FMUs carry the components of a system whose engine is "native".
 
     To be called when all parameters are given: texts among them are built in, and waves, current
-    and wind around a plant are those of its parameters then. They come from the user's cache, and are built if they are not there. What has no C
-    stays in process; there it is noted why, and returned, components by reason. With ``weather``
-    plants are ready for waves, current and wind that are not there yet. Raises InputError without
-    a compiler.
+    and wind around a plant are those of its parameters then. FMUs come from the user's cache, and
+    are built if they are not there. What has no C stays in process; there it is noted why, and
+    returned, components by reason. With ``weather`` plants are ready for waves, current and wind
+    that are not there yet. Raises InputError without a compiler.
     """
     if system.engine != "native":
         return {}

@@ -52,7 +52,8 @@ def build_native_fmu(
 
     ``start_values`` (by port name, SI) are baked in; text parameters, waves, current and wind
     cannot change afterwards. ``surrounded`` says that the FMU will meet weather, which its host
-    evaluates (`surroundings.surround`): its numbers may change before each run then. ``version`` of FMI is 2 or 3. The same input gives the same bytes.
+    evaluates (`surroundings.surround`): its numbers may change before each run then. ``version``
+    of FMI is 2 or 3. The same input gives the same bytes.
     Where its binary runs on this machine, it has done the same as the Python (`selfcheck`), also
     with the values ``given`` before a run (by scalar).
     Raises InputError for a component that has no C, naming the line, values it cannot start

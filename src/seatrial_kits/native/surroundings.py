@@ -45,7 +45,7 @@ def surroundings_of(source: ComponentSource, values: Mapping[str, Any]) -> Met |
 
 def _called(met: Surroundings, states: int) -> Met:
     def call(t: float, state: int, to: int) -> int:
-        x = np.frombuffer((ctypes.c_double * states).from_address(state))
+        x = np.ctypeslib.as_array((ctypes.c_double * states).from_address(state))
         found = met(t, x)
         ctypes.memmove(to, found.ctypes.data, found.nbytes)
         return 1  # an exception, which ctypes shows, is 0
