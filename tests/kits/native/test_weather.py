@@ -180,5 +180,5 @@ def test_a_shipped_trial_in_waves_is_wholly_native_with_the_same_record(
         )
         assert "in Python" not in done.stdout + done.stderr
         records.append((tmp_path / engine / "signals.csv").read_bytes())
-    assert records[0].count(b"\n") > 100
+    assert records[0].count(b"\n") > 40
     assert records[0] == records[1]
