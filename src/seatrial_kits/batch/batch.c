@@ -129,6 +129,15 @@ EXPORTED void batch_set(Batch *batch, const uint8_t *mask, const uint32_t *refer
         if (mask[i]) set_row(batch->copies + i, references, count, values + i * count);
 }
 
+/* Override outputs, each copy of the mask with its row of values; NULL: release them. */
+EXPORTED void batch_override(Batch *batch, const uint8_t *mask, const uint32_t *references,
+                             int64_t count, const double *values) {
+    for (int64_t i = 0; i < batch->count; i++)
+        for (int64_t k = 0; k < count && mask[i]; k++)
+            rig_override(batch->copies[i].rig, references[k], values != NULL,
+                         values ? values[i * count + k] : 0.0);
+}
+
 EXPORTED void batch_get(Batch *batch, const uint32_t *references, int64_t count, double *values) {
     int all_real = 1;
     for (int64_t k = 0; k < count; k++) all_real &= rig_variables[references[k]].type == REAL_TYPE;

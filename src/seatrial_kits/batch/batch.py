@@ -151,6 +151,27 @@ class Batch:
             self._batch, _at(chosen), _at(references), len(references), _at(values)
         )
 
+    def override(self, name: str, value: ArrayLike | str, mask: ArrayLike | None = None) -> None:
+        """Replace an output for all its readers, from now on, until `release` or a start.
+
+        ``value`` and ``mask`` as for `set`. Raises InputError.
+        """
+        self._refuse_closed()
+        chosen = self._mask(mask)
+        references, values = self._settings.overriding(name, value)
+        self._library.batch_override(
+            self._batch, _at(chosen), _at(references), len(references), _at(values)
+        )
+
+    def release(self, name: str, mask: ArrayLike | None = None) -> None:
+        """End an override: the output has its own value again. Raises InputError."""
+        self._refuse_closed()
+        chosen = self._mask(mask)
+        references, _ = self._settings.overriding(name, None)
+        self._library.batch_override(
+            self._batch, _at(chosen), _at(references), len(references), None
+        )
+
     # ------------------------------------------------------------------ life
 
     def reset(

@@ -64,6 +64,7 @@ def _loaded(path: Path) -> ctypes.CDLL:
     found.batch_free.argtypes = [_POINTER]
     values: list[Any] = [_POINTER, _POINTER, _POINTER, _COUNT, _POINTER]
     found.batch_start.argtypes = found.batch_set.argtypes = values
+    found.batch_override.argtypes = values
     found.batch_get.argtypes = [_POINTER, _POINTER, _COUNT, _POINTER]
     found.batch_step.argtypes = [_POINTER, _COUNT, _COUNT]
     found.batch_message.restype = ctypes.c_char_p
@@ -74,6 +75,7 @@ def _loaded(path: Path) -> ctypes.CDLL:
     found.batch_surround.argtypes = [_POINTER, _COUNT, _COUNT, MET]
     for name in (
         "surround",
+        "override",
         "start",
         "set",
         "get",

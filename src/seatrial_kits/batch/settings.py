@@ -72,8 +72,8 @@ class Settings:
         scalars = self._scalars(name, call)
         part = self._system.parts[scalars[0][0].removesuffix(f".{scalars[0][1].name}")]
         for whole, scalar in scalars:
-            if scalar.causality == "output":
-                raise InputError(f"{call}: {whole} is an output and cannot be set")
+            if scalar.causality == "output" and call != "override":
+                raise InputError(f"{call}: {whole} is an output; it can be overridden")
         rows: NDArray[Any] = np.array(0.0 if isinstance(value, str) else value)
         if rows.dtype.kind in "fiub" and rows.ndim and rows.shape[0] == self._count:
             wanted = (self._count,) if len(scalars) == 1 else (self._count, len(scalars))
@@ -114,6 +114,18 @@ class Settings:
             if scalar.causality == "parameter" and scalar.variability != "tunable":
                 raise InputError(f"set: {whole} is fixed once a copy has started; reset sets it")
         return self._stacked(given)
+
+    def overriding(self, name: str, value: Any) -> tuple[NDArray[np.uint32], Floats]:
+        """Return references and rows of outputs that are overridden; of None references alone.
+
+        Raises InputError.
+        """
+        for whole, scalar in self._scalars(name, "override"):
+            if scalar.causality != "output":
+                raise InputError(f"override: {whole} is no output; set it, or reset with it")
+        if value is None:
+            return self.read([name]), np.empty((self._count, 0))
+        return self._stacked(self.given(name, value, "override"))
 
     # ------------------------------------------------------------------ starts
 

@@ -103,6 +103,47 @@ def test_each_copy_follows_its_closed_form(rig: Path) -> None:
         assert batch.time.tolist() == [1.0, 1.0, 1.0]
 
 
+def test_an_override_acts_as_that_of_a_single_run(rig: Path) -> None:
+    with Batch(rig, 3, seed=5) as batch:
+        names = list(batch.signals)
+        batch.set("pilot.wanted", 1.0)
+        batch.step(10)
+        batch.override("pilot.force", np.array([0.5, 0.0, -2.0]), np.array([True, False, True]))
+        batch.override("cork.x", 3.0, np.array([False, False, True]))
+        during = [batch.get(*names)]
+        batch.step(10)
+        during.append(batch.get(*names))
+        saved = batch.save()
+        batch.release("pilot.force")
+        batch.release("cork.x")
+        during.append(batch.get(*names))
+        batch.step(10)
+        during.append(batch.get(*names))
+        batch.restore(saved)
+        batch.step()
+        assert batch.get("pilot.force")[[0, 2]].tolist() == [0.5, -2.0]
+        batch.reset()
+        assert batch.get("cork.x").tolist() == [0.0, 0.0, 0.0]
+    for i, force in enumerate((0.5, None, -2.0)):
+        with Simulation(rig, engine="native", seed=5 + i) as one:
+            one.set("pilot.wanted", 1.0)
+            one.step(10)
+            if force is not None:
+                one.override("pilot.force", force)
+            if i == 2:
+                one.override("cork.x", 3.0)
+            assert everything(one) == during[0][i].tolist()
+            one.step(10)
+            assert everything(one) == during[1][i].tolist()
+            if force is not None:
+                one.release("pilot.force")
+            if i == 2:
+                one.release("cork.x")
+            assert everything(one) == during[2][i].tolist()
+            one.step(10)
+            assert everything(one) == during[3][i].tolist()
+
+
 def test_copies_go_on_from_the_states_of_others(rig: Path) -> None:
     with Batch(rig, 4, seed=9) as batch:
         batch.set("pilot.wanted", np.arange(4.0))
@@ -150,7 +191,9 @@ def test_a_copy_that_fails_ends_alone_with_its_message(rig: Path) -> None:
     ("call", "message"),
     [
         (lambda b: b.set("pilot.place", 1.0), "pilot.place is fed by cork.x"),
-        (lambda b: b.set("pilot.force", 1.0), "pilot.force is an output"),
+        (lambda b: b.set("pilot.force", 1.0), "pilot.force is an output; it can be over"),
+        (lambda b: b.override("pilot.wanted", 1.0), "pilot.wanted is no output; set it"),
+        (lambda b: b.override("pilot.force", [1.0, 2.0]), r"has shape \(2,\)"),
         (lambda b: b.set("cork.mass", 1.0), "cork.mass is fixed once a copy has started; reset"),
         (lambda b: b.set("pilot.wnted", 1.0), "wanted"),
         (lambda b: b.set("plot.wanted", 1.0), "pilot"),

@@ -25,8 +25,9 @@ typedef enum { INSTANTIATED, INITIALISING, RUNNING, TERMINATED } Phase;
 typedef enum { CURRENT, TOUCHED, UNSETTLED_STATE } Freshness;
 
 typedef struct { /* all that changes; the components' own states come behind it */
-    double signals[SIGNALS + 1], buffer[BUFFER + 1], relaxations[LOOPS + 1];
-    unsigned char has_previous[OPERATIONS + 1], touched[NODES + 1];
+    double signals[SIGNALS + 1], overrides[SIGNALS + 1], own[SIGNALS + 1], buffer[BUFFER + 1], relaxations[LOOPS + 1];
+    unsigned char overridden[SIGNALS + 1], has_previous[OPERATIONS + 1], touched[NODES + 1];
+    int are_overridden; /* how many signals */
     int64_t steps, now_ns;
     Phase phase;
     Freshness freshness;
@@ -58,6 +59,24 @@ static void say(Rig *self, const char *format, ...) {
 #include "values.inc"
 #include "state.inc"
 
+/* Let another value take the place of an output for all its readers, or end that; between steps. */
+void rig_override(fmi2Component c, fmi2ValueReference output, int begins, double value) {
+    Rig *self = c;
+    State *state = &self->state;
+    const int place = rig_variables[output].place;
+    if (begins) {
+        if (!state->overridden[place]) state->own[place] = state->signals[place];
+        state->signals[place] = state->overrides[place] = value;
+    } else if (state->overridden[place]) {
+        state->signals[place] = state->own[place];
+    }
+    state->are_overridden += !!begins - state->overridden[place];
+    state->overridden[place] = (unsigned char)!!begins;
+    heed_overrides(self);
+    state->touched[rig_variables[output].node] = 1;
+    if (state->freshness == CURRENT) state->freshness = TOUCHED;
+}
+
 /* ------------------------------------------------------------------ life */
 
 fmi2Component rig_component(fmi2Component c, int node) { return ((Rig *)c)->components[node]; }
@@ -65,6 +84,7 @@ fmi2Component rig_component(fmi2Component c, int node) { return ((Rig *)c)->comp
 /* Return to before the initialisation, with the values that the rig gives. */
 static fmi2Status begin_anew(Rig *self) {
     memset(&self->state, 0, sizeof self->state);
+    heed_overrides(self);
     for (int i = 0; i < OPERATIONS; i++)
         self->operations[i].relaxation = 1.0, self->operations[i].has_previous = 0;
     for (int i = 0; i < GIVEN; i++) {
@@ -119,6 +139,7 @@ fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String guid, f
     self->master.step_ns = STEP_NS;
     self->master.said = &self->said;
     self->master.any_quantity = ANY_QUANTITY;
+    self->master.overrides = self->state.overrides, self->master.own = self->state.own;
     if (begin_anew(self) <= fmi2Warning) return self;
     fmi2FreeInstance(self);
     return NULL;
