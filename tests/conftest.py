@@ -44,7 +44,7 @@ def pytest_ignore_collect(collection_path: Path) -> bool | None:
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Let a case in so many of a `sampled` test stay quick; the others are slow."""
+    """Let a case in so many of a `sampled` test stay; the others are slow, or long if it is slow."""
     cases: Counter[str] = Counter()
     for item in items:
         mark = item.get_closest_marker("sampled")
@@ -52,7 +52,8 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
             continue
         test = item.nodeid.partition("[")[0]
         if cases[test] % mark.args[0]:
-            item.add_marker(pytest.mark.slow)
+            is_slow = any(item.get_closest_marker(name) for name in ("slow", "interop"))
+            item.add_marker(pytest.mark.long if is_slow else pytest.mark.slow)
         cases[test] += 1
 
 

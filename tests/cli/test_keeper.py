@@ -157,6 +157,7 @@ def keeper_of(process: subprocess.Popen[str]) -> int:
 # ---------------------------------------------------------------------- a hang
 
 
+@pytest.mark.sampled(5)
 @pytest.mark.parametrize("engine", ENGINES)
 @pytest.mark.parametrize(
     "how",

@@ -104,6 +104,7 @@ def start(write, tmp_path: Path, launched: Launched) -> Start:
     return start
 
 
+@pytest.mark.sampled(6)
 @pytest.mark.slow
 @needs_kits("can")
 @pytest.mark.parametrize("engine", ["direct", pytest.param("fmu", marks=pytest.mark.interop)])

@@ -143,6 +143,7 @@ def test_it_sets_out_to_the_east(made):
     assert run(made, NAME).returncode == 0
 
 
+@pytest.mark.long
 @pytest.mark.interop
 @every_made
 def test_all_engines_give_the_same_bytes(made):

@@ -33,6 +33,7 @@ def ended(process: subprocess.Popen[str], whose: str, number: int) -> str:
     return message
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.slow
 @pytest.mark.parametrize(
     "isolated",

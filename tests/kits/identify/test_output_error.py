@@ -43,6 +43,7 @@ LIMITS = reference_limits()
 BY_NAME = {case.name: case for case in CASES}
 
 
+@pytest.mark.long
 @pytest.mark.interop
 @pytest.mark.parametrize("seed", [101, 102, 103])
 @pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)

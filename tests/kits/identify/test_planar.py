@@ -206,6 +206,7 @@ def test_a_short_log_is_refused(pool):
         planar_study(read_experiment(str(pool(rows=60))))
 
 
+@pytest.mark.long
 @pytest.mark.interop
 def test_the_vehicle_is_found_again_in_six_degrees_of_freedom(tmp_path):
     """Truth is vehicles/videoray.toml; the tolerances contain what roll, pitch and heave do."""

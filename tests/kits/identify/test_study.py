@@ -92,6 +92,7 @@ def test_the_vehicle_file_is_the_base_with_a_variant(pool, tmp_path):
     assert rov.added_mass[1] == 6.05
 
 
+@pytest.mark.long
 @pytest.mark.interop
 def test_another_axis_is_added_to_an_identified_vehicle(pool, tmp_path):
     first = found_in(pool(text=BASE))

@@ -341,6 +341,7 @@ def hydrone(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder / "sil.fmu"
 
 
+@pytest.mark.long
 @pytest.mark.interop
 def test_the_closed_loop_of_a_vehicle(hydrone: Path, tmp_path: Path) -> None:
     """GNSS with noise and delay, a fault by its text: the numbers of the rig in Python."""

@@ -73,6 +73,7 @@ def test_a_record_is_played_back(browser, hydrone: Path, tmp_path: Path) -> None
     assert command.process.returncode == 0
 
 
+@pytest.mark.long
 def test_the_token_leaves_the_address_and_other_sites_stay_out(browser, hydrone, tmp_path) -> None:
     with served(tmp_path, "play", str(hydrone)) as command, other_site() as other:
         context = browser.new_context()

@@ -138,6 +138,7 @@ class Pair:
         return found
 
 
+@pytest.mark.sampled(25)
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "version"),
@@ -386,6 +387,7 @@ def _values(rig: str, engine: str, steps: int, **settings: Any) -> list[list[flo
         return rows
 
 
+@pytest.mark.long
 @pytest.mark.interop
 @pytest.mark.parametrize("rig", ["landing", "thruster-ship", "mariner-pd"])
 def test_a_rig_runs_in_c_where_it_can(rig: str) -> None:

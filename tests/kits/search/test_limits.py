@@ -105,6 +105,7 @@ def test_a_trial_s_boundary_is_that_of_its_closed_form(asked, tmp_path):
     assert "Points of the boundary" in page
 
 
+@pytest.mark.long
 @pytest.mark.interop
 def test_an_answer_does_not_depend_on_who_runs_it_nor_on_a_stop(asked, tmp_path):
     campaign = asked("ellipse", "form.y < 1 m", f"{ELLIPSE}[ask.limits]\nruns = 30\n")

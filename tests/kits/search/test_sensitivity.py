@@ -88,6 +88,7 @@ def test_a_trial_s_indices_are_those_of_its_closed_form(asked, tmp_path):
     assert (folder / "sensitivity.svg").is_file()
 
 
+@pytest.mark.long
 @pytest.mark.interop
 def test_ishigami_s_function_through_a_trial(asked, tmp_path):
     text = f'figures = ["form.y"]\n{ANGLES}[ask.sensitivity]\nof = ["last form.y"]\nsamples = 256\ntrajectories = 0\n'
