@@ -66,6 +66,10 @@ LONG = {
     KITS / "identify/identification.md",
     KITS / "identify/from-trials.md",
     DOCS / "vehicles/guidance.md",
+    DOCS / "vehicles/remus100.md",
+    DOCS / "vehicles/supply-ship.md",
+    HOW_TO / "new-vehicle.md",
+    HOW_TO / "own-vehicle.md",
 }
 """Pages whose examples take minutes."""
 ELSEWHERE = {
