@@ -144,6 +144,7 @@ def test_files_that_two_runs_do_not_share_are_named(project, tmp_path):
     assert [change.name for change in comparison.changes] == ["../parts/gain.txt (file)"]
 
 
+@pytest.mark.slow
 def test_a_case_of_a_folder_runs_again_of_the_same_files_alone(project, tmp_path):
     run_sweep(campaign_of(project), tmp_path / "out", how())
     arguments = ("campaign", "rerun", "campaigns/c.toml", "--case", "1", "--engine", "direct")

@@ -7,6 +7,7 @@ import pandas as pd
 import pytest
 
 from seatrial.errors import InputError
+from seatrial.trial.campaigns.asked import asked_of
 from seatrial.trial.campaigns.campaign import load_campaign
 from seatrial.trial.campaigns.shipment import packed, unpacked
 from seatrial.trial.campaigns.sweep import How, run_sweep
@@ -36,6 +37,7 @@ class Case(Component):
             time.sleep(0.05)
 """
 WAYS = '[grid]\n"case.way" = ["run", "{}", "run"]\n'
+ASK = '[ask.set]\n"case.way" = "run"\n'
 MESSAGE = r"^case: its step at t = [\d.]+ s: beyond its limit of "
 
 
@@ -49,7 +51,9 @@ def write(folder, way, limit, trial_limit=""):
         '[[criteria]]\nname = "few"\ncheck = "case.steps < 1000"\n', "utf-8"
     )  # fmt: skip
     path = folder / "campaign.toml"
-    path.write_text(f'trials = ["t.toml"]\nkeep = "none"\n{limit}\n{WAYS.format(way)}', "utf-8")
+    path.write_text(
+        f'trials = ["t.toml"]\nkeep = "none"\n{limit}\n{WAYS.format(way)}{ASK}', "utf-8"
+    )
     return path
 
 
@@ -77,10 +81,12 @@ def test_a_campaigns_limit_stands_in_place_of_its_trials_and_the_command_lines_o
     assert (of_case.wall_s, of_case.call_s, of_case.memory_bytes) == (2.0, 3.0, float("inf"))
     changed = load_campaign(str(path), limit={"wall": "none", "memory": "2 KiB"})
     for campaign in (changed, unpacked(packed(changed))[0]):  # as a worker of a cluster has it
-        of_case = campaign.cases()[0].trial.file.limit
-        assert (of_case.wall_s, of_case.call_s, of_case.memory_bytes) == (float("inf"), 3.0, 2048)
+        for trial in (campaign.cases()[0].trial, asked_of(campaign, "worst-case").base):
+            limit = trial.file.limit
+            assert (limit.wall_s, limit.call_s, limit.memory_bytes) == (float("inf"), 3.0, 2048)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("keep", ["", 'keep = "none"'])
 def test_a_case_that_is_beyond_its_limit_as_it_loads_is_a_failed_one(tmp_path, keep):
     path = write(tmp_path, "run", "")
@@ -97,6 +103,7 @@ def test_a_case_that_is_beyond_its_limit_as_it_loads_is_a_failed_one(tmp_path, k
     )
 
 
+@pytest.mark.slow
 def test_cases_with_folders_have_limits_too(tmp_path):
     path = write(tmp_path, "dawdle", "")
     path.write_text(path.read_text().replace('keep = "none"', ""), "utf-8")

@@ -16,7 +16,7 @@ from tests.command import seatrial as command
 
 pytestmark = [
     pytest.mark.skipif(sys.platform == "win32", reason="POSIX signals"),
-    pytest.mark.long,
+    pytest.mark.slow,
 ]
 HANGER = """
 import time

@@ -85,8 +85,10 @@ def twice(folder, *arguments):
     ("way", "called"),
     [
         ("clock", ["time.time (parts.py:26 in step) 6 times"]),
-        ("entropy", ["os.urandom (parts.py:28 in step) 6 times"]),
-        ("set", None),
+        pytest.param(
+            "entropy", ["os.urandom (parts.py:28 in step) 6 times"], marks=pytest.mark.slow
+        ),
+        pytest.param("set", None, marks=pytest.mark.slow),
     ],
 )
 def test_a_component_that_differs_is_named_with_its_calls(project, way, called):
@@ -97,6 +99,7 @@ def test_a_component_that_differs_is_named_with_its_calls(project, way, called):
     assert found["calls"].get("gust") == called
 
 
+@pytest.mark.slow
 def test_calls_that_make_no_difference_are_said_of_runs_that_are_the_same(project):
     (project / "c.toml").write_text(
         'trials = ["t.toml"]\nkeep = "none"\n[grid]\n"gust.way" = ["generators", "environment"]\n',
@@ -111,6 +114,7 @@ def test_calls_that_make_no_difference_are_said_of_runs_that_are_the_same(projec
     assert environment == ["os.environ['GUST'] (parts.py:32 in step) 6 times"]
 
 
+@pytest.mark.slow
 def test_of_a_campaign_with_folders_one_case_that_differs_is_a_failure(project):
     (project / "c.toml").write_text(
         'trials = ["t.toml"]\n[grid]\n"gust.way" = ["", "clock"]\n', "utf-8"

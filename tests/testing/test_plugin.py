@@ -167,6 +167,7 @@ def test_the_plugin_is_in_the_metadata() -> None:
     assert project["project"]["entry-points"]["pytest11"] == {"seatrial": "seatrial.testing.plugin"}
 
 
+@pytest.mark.slow
 def test_a_run_beyond_a_limit_of_the_mark_or_of_the_option_fails_its_test(tmp_path: Path) -> None:
     mark = '@pytest.mark.trial("long.toml", limit={"memory": "1 kB"})'
     (tmp_path / "rig.toml").write_text(RIG)

@@ -120,6 +120,11 @@ class Campaign:
         pairs = zip(self.trials, self.file.trials, strict=True)
         return Cases(self._block(trial, entry, rows) for trial, entry in pairs)
 
+    def limited(self, trial: Trial) -> Trial:
+        """Return one of its trials with the campaign's limits in place of the trial's."""
+        own = self.file.limit.model_dump(exclude_unset=True)
+        return trial.limited(own, f"{self.read_from.path}: limit").limited(self.limit, "--limit")
+
     @property
     def setter(self) -> str:
         """Who sets what all cases set, for messages."""
@@ -135,9 +140,7 @@ class Campaign:
         if FAULTS in keys and (lost := {row[FAULTS] for row in rows} - file.faults.keys()):
             said = unknown("name of faults", min(lost), file.faults)
             raise InputError(f"{origin}: design: {FAULTS}: {said}")
-        base = trial.changed(common, self.setter)
-        base = base.limited(file.limit.model_dump(exclude_unset=True), f"{origin}: limit")
-        base = base.limited(self.limit, "--limit")
+        base = self.limited(trial.changed(common, self.setter))
         return Block(
             replace(base, figures=tuple(file.figures)),
             common,

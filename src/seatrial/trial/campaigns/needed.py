@@ -8,7 +8,7 @@ from pathlib import Path
 
 from ...vehicle_folders import FOLDERS
 from ..files.trial import Trial, is_choice
-from ..records.deciding import deciding_files, found_by_name, is_ours, named_in
+from ..records.deciding import deciding_files, found_by_name, named_in, our_folders
 from .campaign import Campaign
 
 
@@ -24,11 +24,11 @@ def needed_files(campaign: Campaign) -> list[Path]:
         for trial in campaign.trials
         for path in files_of(campaign, trial, is_absolute_too=False)
     }
-    here = Path.cwd().resolve()
+    here, ours = Path.cwd().resolve(), our_folders()
     for trial in campaign.trials:
         for kind, name, path in found_by_name(trial.rig):
             is_below = path.parent in (here / kind, here / FOLDERS / name)
-            if is_below and not name.endswith(".toml") and not is_ours(path):
+            if is_below and not name.endswith(".toml") and not any(map(path.is_relative_to, ours)):
                 found[here] = None
     return list(found)
 

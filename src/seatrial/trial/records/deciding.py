@@ -52,20 +52,21 @@ def deciding_files(
         for placed in chosen.rig.components.values():
             pending += _of_code(placed)
     found: dict[Path, None] = {}
+    ours = our_folders()
     while pending:
         path = pending.pop()
-        if path not in found and path not in apart and not is_ours(path):
+        if path not in found and path not in apart and not any(map(path.is_relative_to, ours)):
             found[path] = None
             pending += _named_by(path, is_absolute_too)
     return list(found)
 
 
-def is_ours(path: Path) -> bool:
-    """Say if a file is shipped, of a kit, or unpacked from one that is not."""
+def our_folders() -> list[Path]:
+    """Return the folders of what is shipped, of kits, and of what is unpacked from FMUs."""
     folders = [shipped_folder(each) for each in _SHIPPED]
     folders += [content_of(kit) for kit in kits().found]
     folders.append(cache_folder("unpacked"))
-    return any(path.is_relative_to(folder.resolve()) for folder in folders)
+    return [folder.resolve() for folder in folders]
 
 
 def files_in(top: Path) -> Iterator[Path]:
