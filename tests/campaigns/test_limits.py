@@ -1,6 +1,7 @@
 """Limits of wall time and memory: a case beyond one is a failed row, and the rest goes on."""
 
 import re
+import subprocess
 import sys
 
 import pandas as pd
@@ -12,6 +13,7 @@ from seatrial.trial.campaigns.campaign import load_campaign
 from seatrial.trial.campaigns.shipment import packed, unpacked
 from seatrial.trial.campaigns.sweep import How, run_sweep
 from seatrial.trial.files.limit_entry import LimitEntry
+from seatrial.trial.running.memory import resident_bytes
 from tests.command import seatrial as command
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="memory of processes")
@@ -55,6 +57,20 @@ def write(folder, way, limit, trial_limit=""):
         f'trials = ["t.toml"]\nkeep = "none"\n{limit}\n{WAYS.format(way)}{ASK}', "utf-8"
     )
     return path
+
+
+def test_memory_is_that_of_a_process_and_of_those_that_it_starts():
+    psutil = pytest.importorskip("psutil", reason="it comes with Dask")
+    hold = "import sys, time; held = bytearray(b'x' * 50_000_000); print(1, flush=True); time.sleep(60)"
+    inner = f"import subprocess, sys; subprocess.run([sys.executable, '-c', {hold!r}])"
+    with subprocess.Popen([sys.executable, "-c", inner], stdout=subprocess.PIPE) as process:
+        assert process.stdout.read(1) == b"1"
+        tree = psutil.Process(process.pid)
+        own = [each.memory_info() for each in (tree, *tree.children(recursive=True))]
+        found = resident_bytes(process.pid)
+        tree.children()[0].kill()
+    assert found == pytest.approx(sum(each.rss - each.shared for each in own), rel=0.05)
+    assert found > 50_000_000
 
 
 @pytest.mark.parametrize(

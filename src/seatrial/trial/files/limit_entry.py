@@ -66,7 +66,7 @@ class LimitEntry(FileModel):
     wall: _Duration = NONE
     """Wall time from the run's begin, with the loading of its components."""
     memory: Annotated[str, AfterValidator(_size)] = NONE
-    """Resident memory of the run's process beyond what it had before."""
+    """Resident memory of the run's process, and of those that it starts, beyond what was before."""
     call: _Duration | None = None
     """Wall time of a call without progress; None: in real time 2 s in a step and 10 s at the end,
     else 60 s."""

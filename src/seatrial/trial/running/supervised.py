@@ -94,7 +94,7 @@ def _limited(child: Child, what: str) -> Iterator[None]:
     """Let the keeper see that a run goes on, which has limits."""
     trace = child.call_trace
     is_run = what in ("measure", "run")
-    trace.before = resident_bytes() if is_run else 0
+    trace.before = resident_bytes(os.getpid()) if is_run else 0
     trace.runs += is_run
     child.loads = True
     try:
