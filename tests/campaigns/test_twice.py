@@ -4,7 +4,10 @@ import json
 
 import pytest
 
+from seatrial.errors import SimulationError
 from seatrial.trial.campaigns.twice import sample
+from seatrial.trial.files.trial import load_trial
+from seatrial.trial.running.again import run_again
 from tests.command import seatrial as command
 
 COMPONENTS = """
@@ -122,6 +125,15 @@ def test_of_a_campaign_with_folders_one_case_that_differs_is_a_failure(project):
     done, found = twice(project, "c.toml", "--out", "out")
     assert done.returncode == 1
     assert [bool(each["difference"]) for each in found] == [False, True]
+
+
+def test_a_repetition_may_last_ten_times_the_limit_of_its_run(project, tmp_path):
+    text = COMPONENTS.replace("self.v = time.time() % 1.0", "time.sleep(60)")
+    (project / "parts.py").write_text(text, "utf-8")
+    trial = load_trial(str(project / "t.toml"), changes={"gust.way": "clock"})
+    trial = trial.limited({"wall": "20 ms"}, "test")
+    with pytest.raises(SimulationError, match="beyond 10 times its limit of 20 ms of wall time"):
+        run_again(trial, "direct", tmp_path / "again", lambda: 0)
 
 
 def test_a_run_that_keeps_to_wall_time_is_refused(project):

@@ -17,7 +17,7 @@ from ..trial.campaigns.further_page import write_further_page
 from ..trial.campaigns.in_folders import run_campaign
 from ..trial.campaigns.sweep import How as SweepHow
 from ..trial.campaigns.sweep import keep_named
-from ..trial.campaigns.twice import First, check_repeatable, sample
+from ..trial.campaigns.twice import First, check_repeatable, has_ended, sample
 from ..trial.reports.campaign_report import write_campaign_report, write_case_report
 from ..trial.reports.playing import play
 from ..trial.running.hooks import Hooks
@@ -108,7 +108,8 @@ def _run_folders(campaign: Campaign, out: Path | None, how: How, leaves: Leaves)
         whole = sum(result.status != "stopped" for result in results)
         is_same = True
         if how.twice and whole == len(cases):
-            chosen = [finished[number] for number in sample(whole)]
+            ended = [pair for pair in finished if has_ended(pair[1].status)]
+            chosen = [ended[number] for number in sample(len(ended))]
             firsts = [First(case.name, case.trial, result.folder) for case, result in chosen]
             is_same = repeat(firsts, how.engine, stop)
     if whole < len(cases):

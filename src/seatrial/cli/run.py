@@ -13,7 +13,7 @@ from ..plugins import service
 from ..system.fault_entry import read_fault
 from ..system.system import Engine
 from ..trial.campaigns.campaign import load_campaign
-from ..trial.campaigns.twice import First, check_repeatable
+from ..trial.campaigns.twice import First, check_repeatable, has_ended
 from ..trial.files.limit_entry import NONE, limits_of
 from ..trial.files.trial import Trial, load_trial
 from ..trial.reports.playing import play
@@ -187,7 +187,7 @@ def _run_trial(
         leaves.write_junit([(trial.name, result)])
         leaves.write_page(lambda: write_report(result.folder, play=play), [result])
         first = First(trial.name, trial, result.folder)
-        is_same = not twice or result.status == "stopped" or repeat([first], engine, stop)
+        is_same = not twice or not has_ended(result.status) or repeat([first], engine, stop)
     exit_with([result])
     exit_unless(is_same)
 

@@ -14,7 +14,8 @@ from ..trial.campaigns.cases import Case, case_folder
 from ..trial.campaigns.ended import Ended
 from ..trial.campaigns.page import write_table_page
 from ..trial.campaigns.sweep import How, Summary, run_sweep
-from ..trial.campaigns.twice import First, sample
+from ..trial.campaigns.table import RESULTS, read_rows
+from ..trial.campaigns.twice import First, has_ended, sample
 from ..trial.running.hooks import Hooks
 from .answer import answer
 from .show import console, print_notes
@@ -77,9 +78,11 @@ def run_table(
 
 
 def _firsts(cases: Cases, summary: Summary) -> list[First]:
-    """Return the cases that are repeated."""
+    """Return the cases that are repeated, of those that have come to their end."""
+    rows = read_rows(summary.folder / RESULTS, ["status"])
+    ended = [number for number, row in enumerate(rows) if has_ended(row["status"])]
     firsts = []
-    for number in sample(summary.ended):
+    for number in (ended[place] for place in sample(len(ended))):
         case = cases[number]
         folder = summary.folder / case_folder(number + 1, case)
         firsts.append(First(case.name, case.trial, folder if folder.is_dir() else None))

@@ -63,6 +63,11 @@ def sample(count: int) -> list[int]:
     return [round(k * (count - 1) / (MOST - 1)) for k in range(MOST)]
 
 
+def has_ended(status: str) -> bool:
+    """Say if a run came to an end that its repetition must come to, too."""
+    return status not in ("failed", "stopped")
+
+
 def check_repeatable(trial: Trial) -> None:
     """Raise InputError for a trial that keeps to wall time."""
     if trial.file.real_time is not None:

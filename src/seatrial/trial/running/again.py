@@ -10,6 +10,7 @@ import os
 import pickle
 import subprocess
 import sys
+import time
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -24,6 +25,7 @@ from .outside_calls import OutsideCalls
 from .run import run_trial
 
 _SLICE_S = 0.2
+_SLOWER = 10
 
 
 @dataclass
@@ -38,7 +40,12 @@ class Again:
 def run_again(
     trial: Trial, engine: Engine, folder: Path, stop_requested: Callable[[], int]
 ) -> Again:
-    """Run ``trial`` into ``folder`` in a new interpreter. Raises SimulationError, StoppedError."""
+    """Run ``trial`` into ``folder`` in a new interpreter.
+
+    Noting calls takes time: it may last `_SLOWER` times the trial's limit of wall time. Raises
+    SimulationError, StoppedError.
+    """
+    latest = time.monotonic() + _SLOWER * trial.file.limit.wall_s
     environment = {**os.environ, "PYTHONHASHSEED": "random"}
     with TemporaryFile() as order, TemporaryFile() as said:
         order.write(pickle.dumps((trial, engine, folder, sys.path)))
@@ -51,6 +58,9 @@ def run_again(
             while _goes_on(process):
                 if stop_requested():
                     raise StoppedError("stopped before all runs were repeated")
+                if time.monotonic() > latest:
+                    most = f"{_SLOWER} times its limit of {trial.file.limit.wall} of wall time"
+                    raise SimulationError(f"{trial.name}: in a new interpreter: beyond {most}")
         finally:
             process.kill()
             process.wait()
