@@ -51,7 +51,7 @@ class Limits(NamedTuple):
 NO_LIMITS = Limits(math.inf, math.inf, math.inf)
 AT_ANY_PACE = Limits(60.0, 60.0, 60.0)
 IN_REAL_TIME = Limits(60.0, 2.0, 10.0)
-STARTS, STEPS, LOADS = 1, 2, 3
+STARTS, STEPS, UNNOTED = 1, 2, 3
 HUNG, ASKED_IN_VAIN, BEYOND_WALL, BEYOND_MEMORY = 1, 2, 3, 4
 """Why the keeper has ended the process of a run."""
 
@@ -99,7 +99,10 @@ class CallTrace:
 
     @property
     def phase(self) -> int:
-        """What goes on that may hang: `LOADS`, `STARTS` (ends too) or `STEPS`; 0 for nothing."""
+        """What goes on that may hang: `STARTS`, which ends are too, or `STEPS`; 0 for nothing.
+
+        `UNNOTED` are a start and an end whose calls are not noted.
+        """
         return self.cells[_PHASE]
 
     @phase.setter
@@ -120,7 +123,7 @@ class CallTrace:
             return end
         if phase == STEPS:
             return step
-        return start if code or held or phase == STARTS else math.inf
+        return start if code or held or phase == UNNOTED else math.inf
 
     def entry(self, names: Sequence[str]) -> tuple[str, str]:
         """Return the component in a call and the call, with its time; two empty texts for none."""

@@ -13,7 +13,7 @@ from contextlib import contextmanager, suppress
 from typing import Any
 
 from ...fmi.isolation.orphan import end_with
-from .call_trace import LOADS, STARTS, STEPS, CallTrace
+from .call_trace import STARTS, STEPS, UNNOTED, CallTrace
 from .link import Link
 
 ASKING = [
@@ -41,8 +41,8 @@ class Child:
 
     def __init__(self, link: Link, trace: CallTrace, parent: int, alarm: int) -> None:
         self.link, self.call_trace = link, trace
-        self.loads = True
-        """Whether components are being loaded, which may take any time; they start behind it."""
+        self.notes = True
+        """Whether calls are noted: what is in none of them, such as loading, may take any time."""
         self._parent, self._own = parent, os.getpid()
         self._may_hang = self._interrupted = False
         self._orders = self._requests = 0
@@ -68,7 +68,7 @@ class Child:
     def interruptible(self) -> Iterator[None]:
         """Let an urgent stop end what is done inside."""
         self._may_hang = True
-        self.call_trace.phase = LOADS if self.loads else STARTS
+        self.call_trace.phase = STARTS if self.notes else UNNOTED
         try:
             self._interrupt()
             yield

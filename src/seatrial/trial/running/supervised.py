@@ -96,7 +96,7 @@ def _limited(child: Child, what: str) -> Iterator[None]:
     is_run = what in ("measure", "run")
     trace.before = resident_bytes(os.getpid()) if is_run else 0
     trace.runs += is_run
-    child.loads = True
+    child.notes = True
     try:
         yield
     finally:
@@ -107,7 +107,7 @@ def _unnoted(child: Child) -> Hooks:
     """Return hooks without a note of each call: who dies is run again, with them."""
 
     def assembled(_system: System, _manifest: object) -> None:
-        child.loads = False
+        child.notes = False
 
     return Hooks(
         assembled=assembled,
@@ -121,7 +121,6 @@ def _hooks(child: Child, observer: Observer | None, keep_going: bool) -> Hooks:
     link, trace = child.link, child.call_trace
 
     def assembled(system: System, manifest: dict[str, Any]) -> None:
-        child.loads = False
         for number, part in enumerate(system.parts.values()):
             part.instance = trace.traced(part.instance, number)
         link.send("assembled", manifest)
