@@ -137,7 +137,7 @@ def test_a_run_and_a_campaign_are_no_pair(folder, tmp_path):
     folder("a", 1.0, BEFORE)
     done = seatrial("compare", "a", "elsewhere", cwd=tmp_path)
     assert done.returncode == 2
-    assert "a is a campaign and elsewhere is none" in done.stderr
+    assert "a is a campaign, and elsewhere has no campaign.json" in done.stderr
 
 
 def test_a_table_and_folders_of_the_same_cases_are_pairs(written, tmp_path):

@@ -10,8 +10,8 @@ import typer
 from rich.markup import escape
 
 from ..errors import InputError
-from ..trial.campaigns.outcomes import is_campaign
 from ..trial.records.compare import compare as compare_runs
+from ..trial.reports.campaign_report import CAMPAIGN
 from .answer import answer
 from .show import console, print_shown, print_table
 from .statuses import FAILED
@@ -31,15 +31,17 @@ def compare(
     pairs. The campaigns' own criteria decide the status where both have some, and the cases'
     verdicts otherwise.
     """
-    campaigns = [is_campaign(folder) for folder in (run_a, run_b)]
+    campaigns = [(folder / CAMPAIGN).is_file() for folder in (run_a, run_b)]
     if all(campaigns):
         _compare_campaigns(run_a, run_b, page)
         return
     if any(campaigns):
         one, other = (run_a, run_b) if campaigns[0] else (run_b, run_a)
-        raise InputError(f"{one} is a campaign and {other} is none: two of a kind are needed")
+        raise InputError(
+            f"{one} is a campaign, and {other} has no {CAMPAIGN}: two of a kind are needed"
+        )
     if page is not None:
-        raise InputError(f"--page: it is of two campaigns, and {run_a} is a run")
+        raise InputError(f"--page: two campaigns are needed, and {run_a} has no {CAMPAIGN}")
     comparison = compare_runs(run_a, run_b)
     answer.result = {
         **asdict(comparison),

@@ -56,11 +56,6 @@ class Outcomes:
     """Reports of cases, as addresses from the folder."""
 
 
-def is_campaign(folder: Path) -> bool:
-    """Say if a folder is a campaign's."""
-    return (folder / INDEX).is_file()
-
-
 def read_outcomes(folder: Path) -> Outcomes:
     """Return the outcomes of a campaign's folder. Raises InputError for one without a case."""
     index = checked_json(folder / INDEX, run_schema.CAMPAIGN)
