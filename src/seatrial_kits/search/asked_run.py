@@ -37,7 +37,7 @@ def asked_run(campaign: Campaign, folder: Path, number: int) -> Case:
     if changes := identity.changed(checked_json(index, CAMPAIGN).get(IDENTITY) or {}):
         raise InputError(f"{index}: changed since: {changes.text()}: no run would be the same")
     cases = asked_of(campaign, question)
-    space = space_of(campaign, f"{campaign.read_from.path}: ask")
+    space = space_of(campaign, question, f"{campaign.read_from.path}: ask")
     rows = read_rows(folder / RESULTS)
     count = 0
     for count, row in enumerate(rows, 1):

@@ -36,7 +36,7 @@ def ask(
             metavar="QUESTION",
             help="'limits': the boundary of what passes; 'worst-case': the least robustness, and "
             "the smallest change that fails; 'sensitivity': how much each key matters; 'rare': how "
-            "likely a failure is.",
+            "likely a failure is; 'tune': the best values of gains over all that varies.",
         ),
     ],
     engine: EngineName = "fmu",

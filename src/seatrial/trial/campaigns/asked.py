@@ -50,7 +50,9 @@ def asked_of(campaign: Campaign, question: str) -> Asked:
     file, origin = campaign.file, f"{campaign.read_from.path}: ask"
     ask = file.ask or Questions()
     trial, own = _trial(campaign, ask.trial, origin)
-    varied = ask.vary or (file.design.vary if file.design else {})
+    varied: set[str] = {*(ask.vary or (file.design.vary if file.design else {}))}
+    if question == "tune" and ask.tune is not None:
+        varied |= ask.tune.keys.keys()
     common: dict[str, Any] = {**file.set, **own.set}
     for key, values in {**file.grid, **own.grid}.items():
         if key in ask.set or key in varied:
