@@ -190,8 +190,8 @@ class _Tuning:
         columns = ["trial", *(goal.name for goal in self._goals), *self._tuned.titles()]
         finding.tables.append(Shown("Pareto front", columns, rows))
         finding.lines.append(
-            f"{len(best)} candidates are on the Pareto front; tuned is the one nearest to the best "
-            "of all objectives, as shares of the front's ranges"
+            f"candidates on the Pareto front: {len(best)}; tuned is the one nearest to the best of "
+            "all objectives, as shares of the front's ranges"
         )
 
     def _settings(self, numbers: np.ndarray) -> dict[str, object]:
