@@ -31,7 +31,7 @@ def sensitivity_question(entry: SensitivityQuestion, asking: Asking) -> Callable
     for library in ("SALib", "matplotlib"):
         needed(library)
     space, origin = asking.space, asking.origin
-    if (space.lower != np.eye(len(space.keys))).any():
+    if space.scatter is not None or (space.lower != np.eye(len(space.keys))).any():
         raise InputError(
             f"{origin}: the design's keys are correlated, and Sobol's indices are of keys that "
             "are not: say what varies in [ask.vary]"

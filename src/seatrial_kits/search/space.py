@@ -10,8 +10,9 @@ import numpy as np
 
 from seatrial.errors import InputError, unknown
 from seatrial.trial.campaigns.campaign import Campaign
-from seatrial.trial.campaigns.designs import lower_factor
+from seatrial.trial.campaigns.designs import joint_quantiles, laws_of, lower_factor
 from seatrial.trial.campaigns.distributions import Distribution, Law, read_distribution
+from seatrial.trial.campaigns.scatter import Scatter
 
 _TAILS = np.array([0.00135, 0.99865])
 """Probabilities at which a distribution without an end is cut: three standard deviations."""
@@ -30,6 +31,8 @@ class Space:
     laws: tuple[Law, ...]
     lower: np.ndarray
     """Cholesky's factor of the correlation of the normal scores."""
+    scatter: Scatter | None = None
+    """Diagram of the last two keys together."""
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "ends", np.array([_ends(law) for law in self.laws]))
@@ -65,7 +68,7 @@ class Space:
     def quantiles(self, probabilities: np.ndarray) -> np.ndarray:
         """Return the values of the keys at independent probabilities."""
         inside = np.clip(probabilities, _TINY, 1.0 - _TINY)
-        return np.stack([law.quantiles(inside[:, i]) for i, law in enumerate(self.laws)], axis=1)
+        return np.stack(joint_quantiles(self.laws, self.scatter, inside), axis=1)
 
     def with_(self, other: Space) -> Space:
         """Return the space of these keys and then those of another, which are independent."""
@@ -73,7 +76,7 @@ class Space:
         lower = np.block(
             [[self.lower, np.zeros((size, more))], [np.zeros((more, size)), other.lower]]
         )
-        return Space(self.keys + other.keys, self.laws + other.laws, lower)
+        return Space(self.keys + other.keys, self.laws + other.laws, lower, other.scatter)
 
     def only(self, keys: Sequence[str], origin: str) -> Space:
         """Return the space of some keys; of all, if there are none. Raises InputError."""
@@ -114,7 +117,7 @@ def tuned_space(campaign: Campaign, origin: str) -> Space:
         raise InputError(
             f'{origin}: keys: at least one with its ends is needed, such as "pilot.kp" = [0.1, 10]'
         )
-    varied = (ask.vary if ask else {}) or (design.vary if design else {})
+    varied = (ask.vary if ask else None) or (design.keys if design else ())
     if both := [key for key in keys if key in varied]:
         raise InputError(f"{origin}: keys: {both[0]} varies too: it can be tuned or drawn")
     laws = {}
@@ -137,8 +140,8 @@ def _varied(campaign: Campaign, origin: str) -> Space:
             'such as "hull.mass" = { uniform = ["20 kg", "24 kg"] }'
         )
     here = f"{campaign.read_from.path}: design"
-    laws = {k: read_distribution(e, f"{here}: vary: {k}") for k, e in design.vary.items()}
-    return Space(tuple(laws), tuple(laws.values()), lower_factor(design, here))
+    laws, scatter = laws_of(design, here)
+    return Space(tuple(laws), tuple(laws.values()), lower_factor(design, here), scatter)
 
 
 def refuse_whole(space: Space, origin: str, why: str) -> None:

@@ -48,6 +48,20 @@ def test_the_same_seed_tunes_to_the_same_bytes(asked, tmp_path):
         assert (tmp_path / "1" / name).read_bytes() == (tmp_path / "2" / name).read_bytes()
 
 
+def test_cases_are_drawn_from_a_scatter_diagram(asked, tmp_path):
+    design = (
+        '[design]\nkind = "monte-carlo"\ncount = 9\n[design.scatter]\n'
+        'rows = { key = "form.b", bins = ["29 kg", "30 kg", "31 kg"] }\n'
+        'columns = { key = "form.c", bins = [0, 1, 2] }\noccurrences = [[1, 0], [0, 1]]\n'
+    )
+    campaign = asked("ellipse", "form.y < 3 m", TUNE.replace("40", "10") + design)
+    _, folder = ask(campaign, "tune", tmp_path / "out", How("direct", jobs=1))
+    table = pd.read_parquet(folder / "results.parquet")
+    assert ((table["form.b"] > 30.0) == (table["form.c"] > 1.0)).all()
+    assert 0 < (table["form.c"] > 1.0).sum() < len(table)
+    assert asked_run(campaign, folder, 3).set["form.c"] == table["form.c"][2]
+
+
 def test_several_objectives_have_a_front(asked, tmp_path):
     # y = (a + b) / sqrt(3): one objective wants a low, the other high: all candidates are on it.
     objectives = (

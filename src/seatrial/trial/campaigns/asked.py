@@ -50,7 +50,7 @@ def asked_of(campaign: Campaign, question: str) -> Asked:
     file, origin = campaign.file, f"{campaign.read_from.path}: ask"
     ask = file.ask or Questions()
     trial, own = _trial(campaign, ask.trial, origin)
-    varied: set[str] = {*(ask.vary or (file.design.vary if file.design else {}))}
+    varied: set[str] = {*(ask.vary or (file.design.keys if file.design else ()))}
     if question == "tune" and ask.tune is not None:
         varied |= ask.tune.keys.keys()
     common: dict[str, Any] = {**file.set, **own.set}
