@@ -16,6 +16,7 @@ from ..records import run_schema
 from ..records.run_schema import checked_json
 from ..reports.report import REPORT
 from .campaign import INDEX
+from .columns import settings_in
 from .distributions import number_and_unit
 from .identity import IDENTITY
 from .table import RESULTS, read_rows, units_of
@@ -92,7 +93,7 @@ def _of_table(path: Path) -> tuple[list[CaseOutcome], dict[str, set[str]]]:
     names = list(units)
     if lacking := {"case", "trial", "status", "passed", "error"} - {*names}:
         raise InputError(f"{path}: this is no table of a campaign: it has no {min(lacking)}")
-    settings = names[names.index("trial") : names.index("status")]
+    settings = settings_in(names)
     found = names[names.index("error") + 1 :]
     kinds: dict[str, set[str]] = {name: {units[name]} for name in found if units[name]}
     cases = []

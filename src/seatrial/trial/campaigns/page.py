@@ -23,6 +23,7 @@ from ..reports.report import REPORT, render
 from .campaign import INDEX
 from .finding import ANSWER, Finding, read_answer
 from .maps import campaign_map, map_figure, said_of
+from .overview import Overview
 from .stopping_rule import failure_interval
 from .table import RESULTS, read_rows, units_of
 
@@ -76,12 +77,14 @@ def write_table_page(folder: Path) -> Path:
     index = checked_json(folder / INDEX, run_schema.CAMPAIGN)
     units = units_of(path)
     names = list(units)
-    settings = names[2 : names.index("seed")]
+    settings = names[2 : names.index("status") - 1]  # the run's own seed is the last
     prefix = "robustness of "
     criteria = [_Criterion(n.removeprefix(prefix)) for n in names if n.startswith(prefix)]
     found = _Found(values={key: [] for key in settings})
+    overview = Overview(names, units)
     for row in read_rows(path):
         found.count += 1
+        overview.add(row)
         found.cases.append(row["case"])
         found.failed.append(not row["passed"])
         for criterion in criteria:
@@ -112,7 +115,10 @@ def write_table_page(folder: Path) -> Path:
         rerun=_rerun(folder, index, is_answer=answer is not None),
         map=None if shown_map is None else map_figure(shown_map).json(),
         said_of_map=None if shown_map is None else said_of(shown_map),
-        figures=[] if answer else _figures(found, units),
+        figures=_figures(found, units) if failed and not answer else [],
+        overview=None if answer else overview,
+        engine=index.get("engine", ""),
+        file=index.get("file", ""),
         answer=answer,
         drawings=_drawings(folder, answer) if answer else [],
     )
