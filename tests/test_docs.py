@@ -213,7 +213,9 @@ def run_commands(block: Block) -> None:
         )
         matches = doctest.OutputChecker().check_output(shown, got, doctest.ELLIPSIS)
         assert matches or not shown, f"{line}\n{got}"
-        shows_failure = re.search(r"FAIL|seatrial: |Error|of \d+ cases pass|went from pass to fail", shown)
+        shows_failure = re.search(
+            r"FAIL|seatrial: |Error|of \d+ cases pass|went from pass to fail", shown
+        )
         assert done.returncode == 0 or shows_failure, f"{line}: status {done.returncode}\n{got}"
 
 

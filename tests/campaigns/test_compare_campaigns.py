@@ -116,7 +116,9 @@ def test_columns_of_other_units_are_not_compared(folder):
 def test_criteria_of_the_campaigns_decide_before_single_cases(folder, before, after, worse):
     a = folder("a", 1.0, BEFORE, criteria=[("reliable", before)])
     b = folder("b", 1.0, AFTER, criteria=[("reliable", after)])
-    assert compare_campaigns(a, b).is_worse == worse
+    found = compare_campaigns(a, b)
+    assert found.is_worse == worse
+    assert ("went from pass to fail: reliable" in found.lines) == worse
 
 
 def test_the_command_says_it_in_tables_in_json_and_on_a_page(folder, tmp_path):
@@ -127,6 +129,7 @@ def test_the_command_says_it_in_tables_in_json_and_on_a_page(folder, tmp_path):
     assert document["result"]["worse"] is True
     assert document["result"]["changed"][0]["case_b"] == 2
     assert "cases from pass to fail: 1; from fail to pass: 1" in document["lines"]
+    assert "went from pass to fail: 1 cases" in document["lines"]
     page = (tmp_path / "c.html").read_text("utf-8")
     assert "hull.offset 0.5, seed 2" in page
     assert (tmp_path / "plotly.js").is_file()

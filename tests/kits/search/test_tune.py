@@ -40,6 +40,17 @@ def test_a_known_optimum_is_found_and_its_trial_runs(asked, tmp_path):
     assert asked_run(campaign, folder, 7).set["form.a"] == table["form.a"].map("{!r} m".format)[6]
 
 
+@pytest.mark.parametrize("where", ["[set]", "[ask.set]"])
+def test_present_values_are_those_of_the_campaign(asked, tmp_path, where):
+    text = TUNE.replace("40", "10").replace("cases = 4", "cases = 1")
+    campaign = asked("ellipse", "form.y < 3 m", f'{where}\n"form.a" = "300 cm"\n{text}')
+    finding, folder = ask(campaign, "tune", tmp_path / "out", How("direct", jobs=1))
+    assert finding.tables[0].rows[0][1] == 3.0
+    assert pd.read_parquet(folder / "results.parquet")["form.a"][0] == 3.0
+    written = tomllib.loads((folder / "tuned.toml").read_text("utf-8"))
+    assert written["set"]["form.a"] == finding.values["tuned"]["form.a"] != "300 cm"
+
+
 def test_the_same_seed_tunes_to_the_same_bytes(asked, tmp_path):
     campaign = asked("ellipse", "form.y < 3 m", TUNE.replace("40", "12") + VARY)
     for jobs in (1, 2):

@@ -127,6 +127,9 @@ class CampaignComparison:
             f"between {_percent(first.low)} % and {_percent(first.high)} % (Newcombe)",
         ]
         lines += [f"not compared: {name}: {why}" for name, why in self.skipped.items()]
+        if self.is_worse:
+            names = [each.name for each in self.criteria if each.is_worse]
+            lines.append(f"went from pass to fail: {', '.join(names) or f'{worse} cases'}")
         return lines
 
     def content(self) -> dict[str, Any]:
