@@ -105,15 +105,15 @@ def test_failed_tests_of_a_junit_file_are_annotated_at_their_criteria(clone):
     (clone / "sea-trials/junit.xml").write_text(
         '<testsuites><testsuite><testcase classname="level.toml" name="level">'
         "<failure>level: deck.phi &lt; 5 deg: does not hold\n  worst 9 deg</failure></testcase>"
-        '<testcase classname="heel.Tests" name="test_x"><failure>assert 1 == 2</failure></testcase>'
+        '<testcase classname="heel.Tests" name="test_x"><failure>def test_x():\n&gt;   assert 1 == 2\nE   assert 1 == 2\n</failure></testcase>'
         '<testcase classname="heel" name="test_y"/></testsuite></testsuites>',
         "utf-8",
     )
     done, text = summary(clone)
     assert done.returncode == 0, done.stderr
     assert done.stdout.splitlines() == [
-        "::error file=level.toml,line=5,title=level::level: deck.phi < 5 deg: does not hold",
+        "::error file=level.toml,line=5,title=level::level: deck.phi < 5 deg: does not hold; worst 9 deg",
         "::error file=heel.py,title=test_x::assert 1 == 2",
     ]
     assert "1 of 3 tests pass." in text
-    assert "| level | level: deck.phi < 5 deg: does not hold |" in text
+    assert "| level | level: deck.phi < 5 deg: does not hold; worst 9 deg |" in text

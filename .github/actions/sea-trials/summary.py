@@ -15,6 +15,7 @@ import subprocess
 import sys
 from collections.abc import Iterable, Iterator
 from glob import glob
+from itertools import pairwise
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
@@ -79,14 +80,17 @@ def annotate_test(module: str, name: str, text: str) -> Iterator[str]:
     """Annotate each criterion that a failure names, or its test; yield the messages."""
     file = file_of(module)
     found = False
+    lines = [*text.splitlines(), ""]
     for criterion, line in criteria_of(file):
-        for said in text.splitlines():
+        for said, below in pairwise(lines):
             if said.startswith(f"{criterion}: "):
+                said += f"; {below.strip()}" if below.startswith("  ") else ""
                 annotate(said, file, line, criterion)
                 yield said
                 found = True
     if not found:
-        said = (text.strip().splitlines() or [f"{name} failed"])[0]
+        errors = [said[1:].strip() for said in lines if said.startswith("E  ")]
+        said = next(filter(None, [*errors, *lines]), f"{name} failed")
         annotate(said, file, None, name)
         yield said
 
