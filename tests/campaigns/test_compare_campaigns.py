@@ -1,6 +1,8 @@
 """Two campaigns compared: which cases are pairs, what changed, and the status that follows."""
 
 import json
+import re
+from pathlib import Path
 
 import pyarrow as pa
 import pyarrow.parquet as pq
@@ -12,6 +14,7 @@ from seatrial.trial.campaigns.comparison_page import write_comparison_page
 from seatrial.trial.campaigns.in_folders import run_campaign
 from tests.command import seatrial
 
+JSON = Path(__file__).parents[2] / "docs/reference/json.md"
 OFFSETS = [0.0, 0.5, 1.0, 1.5]
 
 
@@ -127,6 +130,8 @@ def test_the_command_says_it_in_tables_in_json_and_on_a_page(folder, tmp_path):
     assert done.returncode == 1, done.stderr
     document = json.loads(done.stdout)
     assert document["result"]["worse"] is True
+    [said] = re.findall(r"^\| `compare` of campaigns \| (.*) \|$", JSON.read_text("utf-8"), re.M)
+    assert set(re.findall(r"`(\w+)`", said)) == set(document["result"])
     assert document["result"]["changed"][0]["case_b"] == 2
     assert "cases from pass to fail: 1; from fail to pass: 1" in document["lines"]
     assert "went from pass to fail: 1 cases" in document["lines"]
