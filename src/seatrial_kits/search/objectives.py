@@ -57,7 +57,7 @@ def goals_of(objectives: Sequence[Objective], asking: Asking) -> list[Goal]:
     trial = asking.asked.base
     if not objectives:
         least = partial(robustness_of, names=asking.criteria(""))
-        return [Goal("worst least robustness", least, True, 1.0)]
+        return [Goal("least robustness, worst case", least, True, 1.0)]
     known = outputs_of(trial)
     goals = []
     for entry in objectives:

@@ -48,7 +48,7 @@ def _links(comparison: CampaignComparison, base: Path) -> list[tuple[str, list[s
     links = []
     for numbers, name in shown.items():
         addresses = [
-            _address(outcomes.folder, outcomes.pages.get(number), base)
+            _address(outcomes.folder, outcomes.links.get(str(number)), base)
             for number, outcomes in zip(numbers, comparison.outcomes, strict=True)
         ]
         if any(addresses):

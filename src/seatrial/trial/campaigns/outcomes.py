@@ -53,8 +53,8 @@ class Outcomes:
     """Verdicts of the campaign's own criteria."""
     files: dict[str, str] = field(default_factory=dict)
     """Content of what decides the cases: hashes and versions, by name."""
-    pages: dict[int, str] = field(default_factory=dict)
-    """Reports of cases, as addresses from the folder."""
+    links: dict[str, str] = field(default_factory=dict)
+    """Addresses of the cases that have a folder, from the campaign's, by number."""
 
 
 def read_outcomes(folder: Path) -> Outcomes:
@@ -75,8 +75,20 @@ def read_outcomes(folder: Path) -> Outcomes:
         units,
         {each["name"]: each["verdict"] for each in index.get("criteria", [])},
         files,
-        dict(_pages(folder, index["cases"])),
+        links_of(folder, index["cases"]),
     )
+
+
+def links_of(folder: Path, entries: Iterable[Mapping[str, Any]]) -> dict[str, str]:
+    """Return the addresses of the cases that have a folder, by number: their reports."""
+    links = {}
+    for entry in entries:
+        name = str(entry["folder"])
+        number_text = name.partition("-")[0]
+        page = f"{name}/{REPORT}" if (folder / name / REPORT).is_file() else f"{name}/"
+        if number_text.isdecimal():
+            links[str(int(number_text))] = quote(page)
+    return links
 
 
 def setting_text(setting: Setting | None) -> str:
@@ -98,9 +110,13 @@ def _of_table(path: Path) -> tuple[list[CaseOutcome], dict[str, set[str]]]:
     kinds: dict[str, set[str]] = {name: {units[name]} for name in found if units[name]}
     cases = []
     for row in read_rows(path):
+        if not isinstance(row["passed"], bool) or not isinstance(row["case"], int):
+            raise InputError(f"{path}: this is no table of a campaign: case {row['case']!r} in it")
         for name in found:
             if name.startswith("unit of ") and row[name]:
-                kinds.setdefault(f"worst of {name.removeprefix('unit of ')}", set()).add(row[name])
+                kinds.setdefault(f"worst of {name.removeprefix('unit of ')}", set()).add(
+                    str(row[name])
+                )
         cases.append(
             CaseOutcome(
                 row["case"],
@@ -151,11 +167,3 @@ def _numbers(pairs: Iterable[tuple[str, Any]]) -> Iterator[tuple[str, float]]:
     for name, value in pairs:
         if isinstance(value, (int, float)) and not isinstance(value, bool) and math.isfinite(value):
             yield name, float(value)
-
-
-def _pages(folder: Path, entries: list[dict[str, Any]]) -> Iterator[tuple[int, str]]:
-    for entry in entries:
-        name = str(entry["folder"])
-        head = name.partition("-")[0]
-        if head.isdigit() and (folder / name / REPORT).is_file():
-            yield int(head), quote(f"{name}/{REPORT}")

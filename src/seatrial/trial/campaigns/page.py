@@ -7,7 +7,6 @@ from dataclasses import dataclass, field
 from html import escape
 from pathlib import Path
 from typing import Any
-from urllib.parse import quote
 
 import numpy as np
 from markupsafe import Markup
@@ -23,6 +22,7 @@ from ..reports.report import REPORT, render
 from .campaign import INDEX
 from .finding import ANSWER, Finding, read_answer
 from .maps import campaign_map, map_figure, said_of
+from .outcomes import links_of
 from .overview import Overview
 from .stopping_rule import failure_interval
 from .table import RESULTS, read_rows, units_of
@@ -111,7 +111,7 @@ def write_table_page(folder: Path) -> Path:
         settings=settings,
         units=units,
         shown=found.shown,
-        links=_links(folder, index),
+        links=links_of(folder, index["cases"]),
         rerun=_rerun(folder, index, is_answer=answer is not None),
         map=None if shown_map is None else map_figure(shown_map).json(),
         said_of_map=None if shown_map is None else said_of(shown_map),
@@ -133,16 +133,6 @@ def _rerun(folder: Path, index: dict[str, Any], *, is_answer: bool) -> str:
         return ""
     words = ["seatrial", "campaign", "rerun", index["file"], "--engine", index["engine"]]
     return shlex.join([*words, *(["--asked", folder.name] if is_answer else []), "--case"]) + " "
-
-
-def _links(folder: Path, index: dict[str, Any]) -> dict[str, str]:
-    """Return the addresses of the cases that have a folder, by number: their reports."""
-    links = {}
-    for entry in index["cases"]:
-        name = str(entry["folder"])
-        page = f"{name}/{REPORT}" if (folder / name / REPORT).is_file() else f"{name}/"
-        links[str(int(name.partition("-")[0]))] = quote(page)
-    return links
 
 
 def _drawings(folder: Path, answer: Finding) -> list[Markup]:
