@@ -15,7 +15,7 @@ NODE_TOOLS := tests/interop/node/node_modules/.installed
 # the environment says: hundreds of tests start processes.
 PYTEST := OPENBLAS_NUM_THREADS=1 PYTHONDONTWRITEBYTECODE= $(BIN)/python -m pytest -n auto --dist worksteal
 
-.PHONY: demo test test-interop test-long test-firmware fuzz mutate lint docs fmus benchmark release clean
+.PHONY: demo test test-slow test-long test-firmware fuzz mutate lint docs fmus benchmark release clean
 
 $(INSTALLED): pyproject.toml
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \
@@ -45,13 +45,13 @@ $(NODE_TOOLS): tests/interop/node/package-lock.json
 	@if npm ci --prefix $(<D) --no-audit --no-fund --ignore-scripts; then touch $@; \
 		else echo "no canboat: npm is missing, or did not reach its registry"; fi
 
-# All modules, a trial of every rig: minutes. With other people's tools, docs and whole voyages: a
-# quarter of an hour. What takes longer still.
+# All modules: minutes. What takes seconds a test, other people's tools, docs and whole voyages: half
+# an hour. What takes longer still.
 test: $(INSTALLED)
-	$(PYTEST) -m "not interop and not long"
+	$(PYTEST) -m "not slow and not interop and not long"
 
-test-interop: $(INSTALLED) $(NODE_TOOLS)
-	$(PYTEST) -m "interop and not long"
+test-slow: $(INSTALLED) $(NODE_TOOLS)
+	$(PYTEST) -m "(slow or interop) and not long"
 
 test-long: $(INSTALLED) $(NODE_TOOLS)
 	$(PYTEST) -m long

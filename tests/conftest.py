@@ -6,6 +6,7 @@ import gc
 import os
 import re
 import signal
+from collections import Counter
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
@@ -40,6 +41,20 @@ def pytest_ignore_collect(collection_path: Path) -> bool | None:
         if not (_ROOT / "src/seatrial_kits" / kit).is_dir():
             return True
     return None
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Let a case in so many of a `sampled` test stay; the others are slow, or long if it is slow."""
+    cases: Counter[str] = Counter()
+    for item in items:
+        mark = item.get_closest_marker("sampled")
+        if mark is None:
+            continue
+        test = item.nodeid.partition("[")[0]
+        if cases[test] % mark.args[0]:
+            is_slow = any(item.get_closest_marker(name) for name in ("slow", "interop"))
+            item.add_marker(pytest.mark.long if is_slow else pytest.mark.slow)
+        cases[test] += 1
 
 
 def pytest_collection_finish() -> None:

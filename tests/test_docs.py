@@ -67,6 +67,10 @@ LONG = {
     KITS / "identify/from-trials.md",
     HOW_TO / "decide-with-campaigns.md",
     DOCS / "vehicles/guidance.md",
+    DOCS / "vehicles/remus100.md",
+    DOCS / "vehicles/supply-ship.md",
+    HOW_TO / "new-vehicle.md",
+    HOW_TO / "own-vehicle.md",
 }
 """Pages whose examples take minutes."""
 ELSEWHERE = {

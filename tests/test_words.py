@@ -138,6 +138,7 @@ def read(name: str) -> str:
     return (ROOT / name).read_text("utf-8")
 
 
+@pytest.mark.slow
 def test_no_replaced_word_is_back() -> None:
     found = [
         each for name in files() for each in (*found_in(name, name), *found_in(name, read(name)))
@@ -221,6 +222,7 @@ def packed(tree: ast.Module) -> list[int]:
     ]
 
 
+@pytest.mark.slow
 def test_docstrings_of_modules_name_the_thing_and_calls_are_plain() -> None:
     found = []
     for name in modules():

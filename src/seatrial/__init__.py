@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 from .moved import find_moved
 
 if TYPE_CHECKING:
+    from .api.batch import Batch
     from .api.campaigns import (
         CampaignResult,
         ask_campaign,
@@ -28,6 +29,7 @@ __version__ = "0.1.0"
 find_moved()
 
 __all__ = [
+    "Batch",
     "CampaignResult",
     "InputError",
     "SeatrialError",
@@ -44,6 +46,7 @@ __all__ = [
 ]
 
 _MODULES = {
+    "api.batch": ("Batch",),
     "api.campaigns": ("CampaignResult", "ask_campaign", "load_campaign_result", "run_campaign"),
     "api.results": ("TrialResult", "Verdict", "load_result", "run_trial"),
     "api.simulation": ("Simulation",),

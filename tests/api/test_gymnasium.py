@@ -30,6 +30,7 @@ def environment(tmp_path: Path):
     env.close()
 
 
+@pytest.mark.slow
 @pytest.mark.filterwarnings("ignore::UserWarning")  # unbounded observations are meant
 def test_the_checker_finds_nothing(environment: Any) -> None:
     check_env(environment)

@@ -32,6 +32,7 @@ def test_what_is_exported_is_there_and_documented() -> None:
         getattr(seatrial, "Simulatoin")  # noqa: B009
 
 
+@pytest.mark.long
 @pytest.mark.interop
 def test_a_caller_of_the_api_is_type_checked(tmp_path: Path) -> None:
     """By what is installed: a wheel has ``py.typed`` beside the modules."""

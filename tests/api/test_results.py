@@ -18,6 +18,7 @@ from seatrial import InputError, SimulationError
 from tests.command import seatrial as command
 
 
+@pytest.mark.slow
 def test_a_run_is_that_of_the_command(trial: str, tmp_path: Path) -> None:
     sets = ["--set", "stop=2.5 s", "--set", "source.level=1.5"]
     done = command("run", trial, "--engine", "direct", "--out", "a", *sets, cwd=tmp_path)
@@ -130,6 +131,7 @@ def test_a_folder_is_read_again(trial: str, tmp_path: Path) -> None:
         seatrial.load_result(tmp_path)
 
 
+@pytest.mark.slow
 def test_a_run_without_a_folder_makes_a_new_one(
     trial: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

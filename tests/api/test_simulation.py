@@ -55,6 +55,7 @@ def test_a_lag_and_an_oscillator_follow_their_closed_forms(rig: Rig) -> None:
         assert sim.get("body.x") == pytest.approx(x, rel=1e-9)
 
 
+@pytest.mark.slow
 def test_a_shipped_rig_gives_the_numbers_of_a_trial(tmp_path: Path) -> None:
     sets = ["--set", "stop=2 s", "--set", "drone.pad=diagonal-aft"]
     seatrial("run", "hydrone-landing", "--engine", "direct", "--out", "run", *sets, cwd=tmp_path)

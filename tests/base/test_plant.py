@@ -597,6 +597,7 @@ def test_inputs_may_depend_on_the_state() -> None:
     assert got["speed.b"].tolist() == got.x[:, 3].tolist()
 
 
+@pytest.mark.slow
 def test_reference_agrees_with_scipys_solve_ivp() -> None:
     plant = Pendulum("plant")
     plant.set("theta_start", 2.5)

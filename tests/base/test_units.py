@@ -360,6 +360,7 @@ def test_quantities_that_are_refused(text, target: str, message: str) -> None:
         quantity(text, target)
 
 
+@pytest.mark.slow
 @given(st.text(max_size=12), st.sampled_from(["m", "1", "rad"]))
 def test_any_text_is_a_finite_number_or_refused(text: str, target: str) -> None:
     for written in (text, f"3 {text}"):

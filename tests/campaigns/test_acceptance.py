@@ -171,6 +171,7 @@ check = "probability of failure < LIMIT at 95 %"
 """Fails where number^2 >= 12: with a probability of 1 - sqrt(12) / 4, 13.4 %."""
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("limit", "word", "status", "ended"),
     [("30 %", "PASS", 0, 160), ("3 %", "FAIL", 1, 160), ("13.4 %", "UNDECIDED", 1, 160)],

@@ -92,6 +92,7 @@ def content(folder: Path) -> dict[str, bytes]:
     }
 
 
+@pytest.mark.long
 def test_it_leaves_what_one_machine_leaves(cluster, campaign, tmp_path):
     address, _ = cluster
     run_sweep(campaign, tmp_path / "here", How("direct", jobs=2))
@@ -100,6 +101,7 @@ def test_it_leaves_what_one_machine_leaves(cluster, campaign, tmp_path):
     assert content(tmp_path / "here") == content(tmp_path / "there")
 
 
+@pytest.mark.long
 def test_a_worker_that_is_killed_loses_no_case(cluster, campaign, tmp_path):
     address, workers = cluster
     ended = []
@@ -116,6 +118,7 @@ def test_a_worker_that_is_killed_loses_no_case(cluster, campaign, tmp_path):
     assert list(pd.read_parquet(tmp_path / "there/results.parquet")["case"]) == [*range(1, 25)]
 
 
+@pytest.mark.long
 def test_files_of_a_user_s_own_travel(cluster, campaign, tmp_path):
     address, _ = cluster
     rig = Path(campaign.trials[0].rig.read_from.path).read_text("utf-8")
@@ -143,6 +146,7 @@ def test_an_address_without_a_scheduler_is_said(campaign, tmp_path, monkeypatch)
     assert not (tmp_path / "out").exists()
 
 
+@pytest.mark.long
 def test_tls_with_certificates_of_one_authority(campaign, tmp_path):
     """Made by OpenSSL; without the client's own, or of another authority, nobody is let in."""
     import dask

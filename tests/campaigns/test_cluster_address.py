@@ -36,6 +36,7 @@ def test_what_is_no_address(address):
         check_address(address)
 
 
+@pytest.mark.slow
 @needs_kits("search")
 def test_the_commands_and_python_refuse_it(tmp_path):
     (tmp_path / "c.toml").write_text('trials = ["hydrone-landing"]\n', "utf-8")

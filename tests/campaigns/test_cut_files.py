@@ -31,6 +31,7 @@ def again(campaign, folder):
     return notes
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("share", [0.0, 0.3, 0.999])
 def test_a_table_that_is_cut(written, tmp_path, share):
     campaign, out = written(GRID), tmp_path / "out"
@@ -45,6 +46,7 @@ def test_a_table_that_is_cut(written, tmp_path, share):
     assert again(campaign, out) == []
 
 
+@pytest.mark.slow
 def test_a_table_whose_middle_is_lost(written, tmp_path):
     """Its end, where Parquet has what the file holds, is whole."""
     campaign, out = written(GRID), tmp_path / "out"
@@ -57,6 +59,7 @@ def test_a_table_whose_middle_is_lost(written, tmp_path):
     assert content(out) == whole
 
 
+@pytest.mark.slow
 def test_the_command_says_so(written, tmp_path):
     run_sweep(written(GRID), tmp_path / "out", How("direct", jobs=2))
     (tmp_path / "out/results.parquet").write_bytes(b"PAR1")
@@ -67,6 +70,7 @@ def test_the_command_says_so(written, tmp_path):
     assert len(pd.read_parquet(tmp_path / "out/results.parquet")) == 4
 
 
+@pytest.mark.slow
 def test_a_log_with_lines_that_are_none(written, tmp_path):
     """Blocks of zeros, as a file system leaves them, and a line that was never written."""
     campaign, out = written(GRID), tmp_path / "out"
@@ -86,6 +90,7 @@ def test_a_log_with_lines_that_are_none(written, tmp_path):
     assert content(other) == whole
 
 
+@pytest.mark.slow
 def test_the_folder_of_a_case_without_a_manifest(written, tmp_path):
     """In a table and without: the case runs again, the others stay."""
     table = written(GRID)

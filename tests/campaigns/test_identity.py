@@ -97,6 +97,7 @@ def opened_by(project, log):
     return {p for p in paths if p.is_relative_to(project) and "__pycache__" not in p.parts}
 
 
+@pytest.mark.slow
 def test_every_file_that_a_case_opens_decides_its_identity(project, tmp_path):
     opened = {path for path in opened_by(project, tmp_path / "log") if path.is_file()}
     assert {project / name for name in FILES} - {project / "parts/helping.py"} <= opened
@@ -131,6 +132,7 @@ def how(**given):
     return How("direct", jobs=1, **given)
 
 
+@pytest.mark.slow
 def test_a_table_is_never_of_two_sources(project, tmp_path):
     out = tmp_path / "out"
     run_sweep(campaign_of(project), out, how())

@@ -57,6 +57,7 @@ def test_a_grid_of_two_numbers_is_drawn_by_itself(written, tmp_path):
     assert "Map" in write_table_page(out).read_text("utf-8")
 
 
+@pytest.mark.slow
 def test_repetitions_are_a_share(written, tmp_path):
     faults = '[faults]\nnothing = []\nhigh = [{ what = "bias", where = "case.y", value = "5 m", at = "0 s" }]\n'
     entry = '[map]\nx = "other.number"\ny = "case.number"\n'
@@ -67,6 +68,7 @@ def test_repetitions_are_a_share(written, tmp_path):
     assert "up to 2" in said_of(found)
 
 
+@pytest.mark.slow
 def test_points_are_on_the_panel_that_they_name(written, tmp_path):
     entry = '[map]\nx = "other.number"\ny = "case.number"\ncolumns = "case.way"\n[[map.points]]\nname = "p"\nat = ["5 m", "2 m"]\npanel = { "case.way" = "run" }\nholds = true\n'
     found = map_of(swept(written, GRID + '"case.way" = ["run", "other"]\n' + entry, tmp_path))
@@ -108,6 +110,7 @@ def drawn(name, vary):
     return replace(campaign, file=campaign.file.model_copy(update={"design": design}))
 
 
+@pytest.mark.slow
 def test_the_published_landing_points_lie_right(tmp_path):
     vary = {
         "downwash.pad.y": {"spaced": ["-0.25 m", "0.25 m", 3]},
@@ -127,6 +130,7 @@ def test_the_published_landing_points_lie_right(tmp_path):
         assert (cell.margin > 0.0) is stated[name]
 
 
+@pytest.mark.slow
 def test_the_edge_of_the_landing_envelope_is_that_of_metacentric_stability(tmp_path):
     vary = {
         "downwash.pad.y": {"levels": ["0.125 m", "0.25 m"]},

@@ -53,6 +53,7 @@ def test_a_row_has_what_was_set_and_what_came_of_it(written, tmp_path):
     assert len(pd.read_parquet(tmp_path / "out/timing.parquet")) == 4
 
 
+@pytest.mark.slow
 def test_the_table_does_not_depend_on_how_many_run_side_by_side(written, tmp_path):
     design = '[design]\nkind = "monte-carlo"\ncount = 30\n[design.vary]\nseed = { integers = [1, 99] }\n"case.number" = { uniform = ["0 m", "5 m"] }\n'
     campaign = written(f'keep = "none"\nsamples = 10\n{design}')
@@ -63,6 +64,7 @@ def test_the_table_does_not_depend_on_how_many_run_side_by_side(written, tmp_pat
     assert len([p for p in (tmp_path / "j1").iterdir() if p.is_dir()]) == 3
 
 
+@pytest.mark.slow
 def test_what_dies_once_runs_again_and_what_dies_twice_has_failed(written, tmp_path):
     campaign = written(
         'keep = "failed"\n[grid]\n"case.way" = ["run", "die", "die once"]\n"case.number" = ["1 m", "2 m"]\n'
@@ -80,6 +82,7 @@ def test_a_death_is_survived_by_running_again(written, tmp_path):
     assert len(list((tmp_path / "seen").glob("2-die-once-*"))) == 2
 
 
+@pytest.mark.slow
 @needs_kits("search")
 def test_a_kept_case_and_a_rerun_have_the_same_bytes(written, tmp_path):
     written(GRID)
@@ -101,6 +104,7 @@ def test_a_kept_case_and_a_rerun_have_the_same_bytes(written, tmp_path):
         assert kept == (tmp_path / "again" / name).read_bytes()
 
 
+@pytest.mark.slow
 def test_a_stopped_campaign_goes_on_to_the_same_table(written, tmp_path):
     campaign = written(
         'keep = "failed"\n[grid]\n"case.way" = ["run", "wait"]\n"case.number" = ["1 m", "2 m", "3 m", "4 m"]\n'
@@ -132,6 +136,7 @@ def test_a_stopped_campaign_goes_on_to_the_same_table(written, tmp_path):
     assert (again.ended, again.failed) == (8, 2)
 
 
+@pytest.mark.slow
 def test_a_case_that_hangs_is_a_failed_row_and_the_rest_goes_on(written, tmp_path):
     written('keep = "none"\n[grid]\n"case.way" = ["run", "wait", "run"]\n"case.number" = ["1 m"]\n')
     options = ("--engine", "direct", "--hang-after", "0.5", "--no-report", "--out", "out")
@@ -173,6 +178,7 @@ def test_intervals_are_those_of_the_books(failed, count):
     )
 
 
+@pytest.mark.slow
 def test_a_campaign_ends_where_its_interval_is_narrow(written, tmp_path):
     design = '[design]\nkind = "monte-carlo"\ncount = 1000\n[design.vary]\n"case.number" = { uniform = ["0 m", "3.7 m"] }\n'
     campaign = written(f'keep = "none"\nuntil = {{ half_width = 0.06, least = 50 }}\n{design}')
@@ -188,6 +194,7 @@ def test_a_campaign_ends_where_its_interval_is_narrow(written, tmp_path):
     assert met == [len(failed)]
 
 
+@pytest.mark.slow
 def test_the_page_of_a_hundred_thousand_cases_is_small(written, tmp_path):
     run_sweep(written(GRID), tmp_path / "out", direct())
     path = tmp_path / "out/results.parquet"
@@ -209,6 +216,7 @@ def test_shipped_campaigns_have_as_many_cases_as_their_lists_say():
     assert Path(load_campaign("hydrone-pads").read_from.path).is_file()
 
 
+@pytest.mark.slow
 def test_python_has_the_same_table(written, tmp_path):
     campaign, seen = written(GRID), []
     run_sweep(campaign, tmp_path / "once", direct())
@@ -247,6 +255,7 @@ kind = "full-factorial"
 """
 
 
+@pytest.mark.slow
 def test_keys_of_a_fault_are_drawn_for_the_cases_that_have_it(written, tmp_path):
     campaign = written(FAULTS.replace('"9 s"', '"200 ms"'))
     run_sweep(campaign, tmp_path / "out", direct())

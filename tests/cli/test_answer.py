@@ -86,6 +86,7 @@ def test_a_mistake_is_an_answer_too(folder: Path, arguments, status: int, said: 
     assert found["result"] == {}
 
 
+@pytest.mark.slow
 def test_every_command_of_the_page_answers(folder: Path) -> None:
     for name in ("a", "b"):
         seatrial("run", "turns.toml", "--engine", "direct", "--out", name, cwd=folder)
@@ -159,6 +160,7 @@ def test_help_has_a_short_name(folder: Path, flag: str) -> None:
     assert seatrial("-V", cwd=folder).stdout == seatrial("--version", cwd=folder).stdout
 
 
+@pytest.mark.slow
 def test_a_shell_completes_commands_options_and_trials(folder: Path) -> None:
     def completed(words: str) -> list[str]:
         environment = {
@@ -177,6 +179,7 @@ def test_a_shell_completes_commands_options_and_trials(folder: Path) -> None:
     assert "hydrone-landing" in completed("run hydrone-l")
 
 
+@pytest.mark.slow
 def test_what_an_fmu_prints_is_not_in_the_document(folder: Path) -> None:
     (folder / "talks.py").write_text(
         "import os\n\nfrom seatrial.model.component import Component, Output\n\n\n"
@@ -194,6 +197,7 @@ def test_what_an_fmu_prints_is_not_in_the_document(folder: Path) -> None:
     assert "chatter" in done.stderr
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("json_too", [(), ("--json",)])
 @pytest.mark.parametrize(("arguments", "status"), [(("list",), 3), (("describe", "nosuch"), 2)])
 def test_a_full_disk_behind_stdout_is_an_error(

@@ -74,6 +74,7 @@ def test_a_criterion_that_fails_is_status_one(tmp_path: Path) -> None:
     assert "seatrial:" not in done.stderr  # nothing but progress
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
@@ -153,6 +154,7 @@ def test_a_component_that_fails_is_status_three(how: str, expected: str, boat: P
     assert (boat / "run" / "report.html").is_file()
 
 
+@pytest.mark.slow
 def test_two_runs_compare_equal_and_different(tmp_path: Path) -> None:
     for out, stop in (("a", "2 s"), ("b", "2 s"), ("c", "3 s")):
         seatrial("run", "hydrone-open-landing", "--set", f"stop={stop}", "--engine", "direct",
@@ -225,6 +227,7 @@ def test_doctor_and_list(tmp_path: Path) -> None:
         assert name in listing
 
 
+@pytest.mark.slow
 def test_the_installed_command(tmp_path: Path) -> None:
     done = subprocess.run([SEATRIAL, "--version"], capture_output=True, text=True, check=False)
     assert (done.returncode, done.stderr) == (0, "")

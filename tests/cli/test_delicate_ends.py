@@ -77,6 +77,7 @@ def meddled(write, vehicle: Vehicle, does: str, engine: str) -> tuple[str, bytes
     return done.stdout + done.stderr, vehicle.read(), said["status"]
 
 
+@pytest.mark.slow
 def test_an_interruption_beside_the_code_of_an_fmu_is_a_stop(write, vehicle: Vehicle) -> None:
     # pythonfmu releases the component then, and calls of it read freed memory.
     output, received, status = meddled(write, vehicle, "interrupt", "fmu")
@@ -85,6 +86,7 @@ def test_an_interruption_beside_the_code_of_an_fmu_is_a_stop(write, vehicle: Veh
     assert "sent the safe state" not in output  # nobody had to do it in its place
 
 
+@pytest.mark.slow
 def test_a_supervisor_killed_in_a_release_keeps_no_other_from_it(write, vehicle: Vehicle) -> None:
     _, received, status = meddled(write, vehicle, "kill", "direct")
     assert status == "stopped"

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import pytest
+
 from tests.command import seatrial
 from tests.kit import needs_kits
 
 
+@pytest.mark.slow
 def test_every_connection_is_shown_and_what_is_open(tmp_path) -> None:
     done = seatrial("describe", "sil", "--vehicle", "videoray", cwd=tmp_path)
     assert done.returncode == 0, done.stderr
@@ -20,6 +23,7 @@ def test_every_connection_is_shown_and_what_is_open(tmp_path) -> None:
     assert ["hull:", "rov"] in lines
 
 
+@pytest.mark.slow
 @needs_kits("mavlink")
 def test_a_trials_rig_is_described_with_its_choices(tmp_path) -> None:
     done = seatrial("describe", "mariner-mission", cwd=tmp_path)
@@ -40,6 +44,7 @@ def test_mistakes_have_near_misses(tmp_path) -> None:
     assert "did you mean 'vehicles/hydrone'" in done.stderr
 
 
+@pytest.mark.slow
 def test_a_part_of_a_rig_is_described_alone(tmp_path) -> None:
     done = seatrial("describe", "vehicles/mariner", cwd=tmp_path)
     assert done.returncode == 0, done.stderr

@@ -115,6 +115,7 @@ def assert_failed_for(run: Path, done: subprocess.CompletedProcess[str], why: st
     assert f"cannot write {run / 'signals.csv'}: {why}" in done.stderr
 
 
+@pytest.mark.slow
 def test_a_record_that_cannot_grow_fails_the_run(tmp_path: Path) -> None:
     run = tmp_path / "run"
     done = subprocess.run(
@@ -151,6 +152,7 @@ def _full_disk(size: str, tmp_path: Path) -> tuple[Path, subprocess.CompletedPro
     return left / "run", done
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(shutil.which("unshare") is None, reason="no unshare here")
 def test_a_full_disk_ends_the_run_as_failed(tmp_path: Path) -> None:
     left, done = _full_disk("200k", tmp_path)
@@ -161,6 +163,7 @@ def test_a_full_disk_ends_the_run_as_failed(tmp_path: Path) -> None:
     assert {path.name for path in left.iterdir()} == {"manifest.json", "signals.csv"}
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(shutil.which("unshare") is None, reason="no unshare here")
 def test_a_disk_too_small_for_the_manifest_holds_no_empty_one(tmp_path: Path) -> None:
     left, done = _full_disk("40k", tmp_path)

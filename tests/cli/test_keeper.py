@@ -157,6 +157,7 @@ def keeper_of(process: subprocess.Popen[str]) -> int:
 # ---------------------------------------------------------------------- a hang
 
 
+@pytest.mark.sampled(5)
 @pytest.mark.parametrize("engine", ENGINES)
 @pytest.mark.parametrize(
     "how",
@@ -183,6 +184,7 @@ def test_a_hang_in_a_step_ends_the_run(
     assert '"status": "failed"' in (tmp_path / "run" / "manifest.json").read_text()
 
 
+@pytest.mark.slow
 def test_a_hang_in_the_start_ends_the_run(start: Start, vehicle: Vehicle, tmp_path: Path) -> None:
     process = start("sleeps", "start", "--engine", "direct", "--hang-after", "1")
     is_last(vehicle)
@@ -202,6 +204,7 @@ def test_a_hang_at_the_end_ends_the_run(start: Start, vehicle: Vehicle, tmp_path
     assert process.returncode == 3
 
 
+@pytest.mark.slow
 def test_all_that_is_called_seatrial_is_killed_at_once(
     start: Start, vehicle: Vehicle, tmp_path: Path
 ) -> None:
@@ -243,6 +246,7 @@ def test_a_hang_without_hardware_ends_the_run(write, tmp_path: Path) -> None:
     assert "a device needs a limit" in refused.stderr
 
 
+@pytest.mark.slow
 def test_a_slow_step_is_no_hang(write, tmp_path: Path) -> None:
     write_hanger(write, stop="0.5 s", how="sleeps", longest="1.0")
     for limit in ("10", "0"):
@@ -250,6 +254,7 @@ def test_a_slow_step_is_no_hang(write, tmp_path: Path) -> None:
         assert seatrial("run", "trial.toml", *arguments, cwd=tmp_path).returncode == 0
 
 
+@pytest.mark.slow
 def test_a_run_that_is_suspended_leaves_no_order(start: Start, vehicle: Vehicle) -> None:
     process = start("")
     wait_for(lambda: b"!!!" in vehicle.read())
@@ -260,6 +265,7 @@ def test_a_run_that_is_suspended_leaves_no_order(start: Start, vehicle: Vehicle)
     assert process.returncode == 3
 
 
+@pytest.mark.slow
 def test_a_simulation_that_is_suspended_goes_on(write, tmp_path: Path) -> None:
     write_hanger(write, stop="2 s", how="")
     command = [SEATRIAL, "run", "trial.toml", "--engine", "direct", "--real-time", "1"]
@@ -277,6 +283,7 @@ def test_a_simulation_that_is_suspended_goes_on(write, tmp_path: Path) -> None:
 # ---------------------------------------------------------------------- requests to stop
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "number",
     [
@@ -300,6 +307,7 @@ def test_a_signal_to_the_process_of_the_run_ends_it_in_order(
     assert (tmp_path / "run" / "report.html").is_file()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("how", "whose"),
     [
@@ -324,6 +332,7 @@ def test_one_signal_ends_a_hang_in_bounded_time(
     assert '"status": "stopped"' in (tmp_path / "run" / "manifest.json").read_text()
 
 
+@pytest.mark.slow
 def test_one_signal_ends_a_hung_simulation(write, tmp_path: Path) -> None:
     write_hanger(write, stop="10 s", how="holds the lock")
     command = [SEATRIAL, "run", "trial.toml", "--engine", "direct", "--out", "run"]
@@ -340,6 +349,7 @@ def test_one_signal_ends_a_hung_simulation(write, tmp_path: Path) -> None:
 # ---------------------------------------------------------------------- deaths
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("how", ["", pytest.param("holds the lock", marks=pytest.mark.interop)])
 def test_a_group_that_is_killed_leaves_the_safe_state(
     how: str, start: Start, vehicle: Vehicle, tmp_path: Path
@@ -352,6 +362,7 @@ def test_a_group_that_is_killed_leaves_the_safe_state(
     is_last(vehicle)
 
 
+@pytest.mark.slow
 def test_a_hung_run_whose_supervisor_is_suspended_or_killed(
     start: Start, vehicle: Vehicle, tmp_path: Path
 ) -> None:
@@ -364,6 +375,7 @@ def test_a_hung_run_whose_supervisor_is_suspended_or_killed(
     os.kill(process.pid, signal.SIGKILL)
 
 
+@pytest.mark.slow
 def test_a_keeper_that_is_killed_ends_the_run(start: Start, vehicle: Vehicle) -> None:
     process = start("")
     wait_for(lambda: b"!!!" in vehicle.read())
@@ -379,6 +391,7 @@ def test_a_keeper_that_is_killed_ends_the_run(start: Start, vehicle: Vehicle) ->
     assert vehicle.read().endswith(SAFE)
 
 
+@pytest.mark.slow
 def test_no_keeper_is_left(start: Start, vehicle: Vehicle) -> None:
     process = start("")
     wait_for(lambda: b"!!!" in vehicle.read())
@@ -403,6 +416,7 @@ def container_stops(process: subprocess.Popen[str]) -> float:
     return time.monotonic() - begun
 
 
+@pytest.mark.slow
 @in_namespace
 @pytest.mark.parametrize(
     ("how", "where"),

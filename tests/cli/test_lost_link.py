@@ -104,6 +104,8 @@ def start(write, tmp_path: Path, launched: Launched) -> Start:
     return start
 
 
+@pytest.mark.sampled(6)
+@pytest.mark.slow
 @needs_kits("can")
 @pytest.mark.parametrize("engine", ["direct", pytest.param("fmu", marks=pytest.mark.interop)])
 @pytest.mark.parametrize(
@@ -137,6 +139,7 @@ def test_a_lost_line_ends_a_run_with_hardware(
     assert "<h2>Lost links</h2>" in page
 
 
+@pytest.mark.slow
 def test_a_run_goes_on_without_it_if_that_is_wanted_and_it_comes_back(
     start: Start, lines: tuple[Line, Line], tmp_path: Path
 ) -> None:
@@ -165,6 +168,7 @@ def test_keeping_on_is_a_word_for_hardware(write, tmp_path: Path) -> None:
     assert (done.returncode, "goes with --hardware" in done.stderr) == (2, True)
 
 
+@pytest.mark.slow
 def test_a_server_that_is_gone_is_a_lost_link_of_a_simulation(write, tmp_path: Path) -> None:
     with socket.create_server(("127.0.0.1", 0)) as server:
         link = f"tcpout:127.0.0.1:{server.getsockname()[1]}"
@@ -183,6 +187,7 @@ def test_a_server_that_is_gone_is_a_lost_link_of_a_simulation(write, tmp_path: P
     assert "it came back 1 times" in output
 
 
+@pytest.mark.slow
 def test_clients_that_leave_are_no_lost_link(write, tmp_path: Path) -> None:
     write("rig.toml", 'step = "10 ms"\n[components]\nport = { fmu = "serial-gateway" }\n')
     write("trial.toml", TRIAL.format(stop=2))

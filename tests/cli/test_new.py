@@ -127,6 +127,7 @@ def test_the_pilot_follows_the_body(made):
 # ---------------------------------------------------------------------- what runs
 
 
+@pytest.mark.slow
 @every_made
 def test_it_runs_in_waves_wind_and_current(made, request):
     result = run_trial(set_out(2, **SEA), made / "out", engine="direct")
@@ -142,6 +143,7 @@ def test_it_sets_out_to_the_east(made):
     assert run(made, NAME).returncode == 0
 
 
+@pytest.mark.long
 @pytest.mark.interop
 @every_made
 def test_all_engines_give_the_same_bytes(made):
@@ -169,6 +171,7 @@ def test_it_waits_for_a_ground_station(made):
     assert "PASS  nobody arms it" in done.stdout
 
 
+@pytest.mark.slow
 def test_its_mission_runs_for_ground_stations(made):
     assert new(made, "trials").returncode == 0
     links = ("--set", "autopilot.mavlink.links=")
@@ -249,6 +252,7 @@ def test_its_drawing_moves_with_its_parts(made, request):
     assert {each["port"] for each in moved} == MOVING[like_of(request)]
 
 
+@pytest.mark.sampled(2)
 @every_made
 def test_its_components_are_drawn(made):
     """Of the usv under this autopilot Graphviz loses an edge at first."""
@@ -284,6 +288,7 @@ def test_what_ardupilot_needs_is_added(like, tmp_path, monkeypatch):
         assert ends == [1100.0, 1500.0, 1900.0]
 
 
+@pytest.mark.slow
 def test_its_sketch_turns_it_east(made):
     need("host")
     assert new(made, "sketch-of").returncode == 0

@@ -33,6 +33,8 @@ def ended(process: subprocess.Popen[str], whose: str, number: int) -> str:
     return message
 
 
+@pytest.mark.sampled(3)
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "isolated",
     [
@@ -58,6 +60,7 @@ def test_the_vehicle_gets_its_safe_state_last(
     assert f'"status": {status}' in (tmp_path / "run" / "manifest.json").read_text()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("whose", "number"), [ENDS[2], ENDS[-2]])
 def test_the_vehicle_gets_its_safe_state_during_the_start(
     whose: str, number: int, start, vehicle: Vehicle
@@ -79,6 +82,7 @@ def holds(process: int, device: str) -> bool:
     return False
 
 
+@pytest.mark.slow
 def test_an_isolated_gateway_that_is_killed_leaves_its_safe_state(
     start, vehicle: Vehicle, tmp_path: Path
 ) -> None:
@@ -93,6 +97,7 @@ def test_an_isolated_gateway_that_is_killed_leaves_its_safe_state(
     assert vehicle.read().endswith(SAFE)
 
 
+@pytest.mark.slow
 def test_a_gateway_whose_master_and_supervisor_are_killed_ends_in_order(
     start, vehicle: Vehicle
 ) -> None:
@@ -105,6 +110,7 @@ def test_a_gateway_whose_master_and_supervisor_are_killed_ends_in_order(
     os.kill(process.pid, signal.SIGKILL)
 
 
+@pytest.mark.slow
 def test_a_stopped_run_goes_on(start, vehicle: Vehicle) -> None:
     process = start()
     wait_for(lambda: b"!!!" in vehicle.read())
@@ -155,6 +161,7 @@ gateway = {{ fmu = "can-gateway", set = {{ link = "{link}", safe_state = "09F10D
 """
 
 
+@pytest.mark.slow
 @needs_kits("can")
 @pytest.mark.parametrize(
     ("whose", "number"),
@@ -193,6 +200,7 @@ def test_a_can_bus_gets_its_frames(whose: str, number: int, write, tmp_path: Pat
         vehicle.close()
 
 
+@pytest.mark.slow
 @needs_kits("can")
 def test_clients_of_a_can_gateway_get_its_frames(write, tmp_path: Path) -> None:
     write("rig.toml", CAN_RIG.format(link="slcan-tcp:127.0.0.1:0"))

@@ -54,6 +54,7 @@ RUN = ("run", "hydrone-open-landing", "--set", "stop=0.1 s", "--out", "run")
 OFTEN = {"jinja2", "lark", "numpy", "pydantic"}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("engine", "own"), [("direct", {"casadi"}), ("fmu", {"casadi", "fmpy", "lxml", "pythonfmu"})]
 )

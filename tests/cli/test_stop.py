@@ -119,6 +119,7 @@ def assert_whole(folder: Path, rows: int) -> None:
     assert "run stopped" in (folder / "report.html").read_text("utf-8")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("number", "engine"), [(signal.SIGINT, "fmu"), (signal.SIGTERM, "direct")])
 def test_a_signal_leaves_a_whole_record(number: int, engine: str, start, tmp_path: Path) -> None:
     process = start("run", "trial.toml", "--out", "run", "--engine", engine)
@@ -129,6 +130,7 @@ def test_a_signal_leaves_a_whole_record(number: int, engine: str, start, tmp_pat
     assert_whole(tmp_path / "run", 10)
 
 
+@pytest.mark.slow
 def test_a_signal_ends_a_wait(start, tmp_path: Path) -> None:
     pace = ("--real-time", "0.0001")  # 100 s of waiting for each step
     process = start("run", "trial.toml", "--out", "run", "--engine", "direct", *pace)
@@ -141,6 +143,7 @@ def test_a_signal_ends_a_wait(start, tmp_path: Path) -> None:
     assert_whole(tmp_path / "run", 1)
 
 
+@pytest.mark.slow
 def test_a_signal_ends_a_campaign_in_its_case(start, tmp_path: Path) -> None:
     process = start("run", "campaign.toml", "--out", "all", "--engine", "direct", "--jobs", "1")
     wait_for(lambda: any(has_status(folder) for folder in (tmp_path / "all").glob("01-*")))
@@ -151,6 +154,7 @@ def test_a_signal_ends_a_campaign_in_its_case(start, tmp_path: Path) -> None:
     assert (tmp_path / "all" / "report.html").is_file()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "name", ["campaign.toml", pytest.param("trial.toml", marks=pytest.mark.interop)]
 )
@@ -203,6 +207,7 @@ def test_two_signals_leave_a_whole_record_too(
     assert_whole(tmp_path / "run", 10)
 
 
+@pytest.mark.slow
 def test_signals_up_to_the_very_end_leave_status_and_message(start, tmp_path: Path) -> None:
     # A late one must not kill the program between its message and its end.
     process = start("run", "trial.toml", "--out", "run", "--engine", "direct")
@@ -260,6 +265,7 @@ def test_a_run_whose_supervisor_is_killed_ends_in_order(
     assert_whole(tmp_path / "run", rows)
 
 
+@pytest.mark.slow
 def test_a_suspended_run_whose_supervisor_is_killed_ends_when_it_goes_on(
     start, tmp_path: Path
 ) -> None:
@@ -297,6 +303,7 @@ def test_a_run_of_which_all_is_killed_is_whole_up_to_its_last_row(
     assert "timing.json is missing" in page
 
 
+@pytest.mark.slow
 def test_nobody_reads_what_is_printed_and_the_status_is_the_verdict(write, tmp_path: Path) -> None:
     write("still.py", COMPONENT)
     write("rig.toml", 'step = "10 ms"\n[components]\nboat = { fmu = "still.py:Slow" }\n')

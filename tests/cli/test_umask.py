@@ -26,6 +26,7 @@ COMMANDS = (
 )
 
 
+@pytest.mark.slow
 @needs_kits("logs")
 @pytest.mark.parametrize("umask", [0o027, 0o002])
 def test_the_umask_decides(tmp_path: Path, umask: int) -> None:

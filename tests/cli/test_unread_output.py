@@ -48,6 +48,7 @@ os.write(2, b"statuses:" + json.dumps(found).encode())
 """
 
 
+@pytest.mark.slow
 @needs_kits("arduino", "ardupilot", "can", "mavlink", "nmea", "px4", "videoray")
 @pytest.mark.parametrize("buffered", [True, False])
 def test_a_reader_that_is_gone_changes_no_status(buffered: bool, tmp_path: Path) -> None:

@@ -75,6 +75,7 @@ def test_the_angle_of_an_azimuth_is_a_command_and_that_of_a_tunnel_is_none(chang
     assert of_hull == ["vehicle.hull.propulsor_angle.p1"]
 
 
+@pytest.mark.slow
 def test_places_without_a_part_are_not_listed(change):
     found = system()
     empty = vacant(found)

@@ -153,6 +153,7 @@ def test_a_turn_past_south_is_no_jump_of_the_rate():
     np.testing.assert_allclose(moments[0], moments[1], rtol=1e-9)
 
 
+@pytest.mark.slow
 def test_ideal_loop_is_that_of_its_poles():
     """A mass and a sudden force: m z'' = F - Kd z' - Kp z - Ki int z, in closed form."""
     T, F = 0.001, 5.0

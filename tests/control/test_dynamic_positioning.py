@@ -139,6 +139,7 @@ def test_ideal_loop_is_that_of_its_poles():
     assert np.abs(eta[:, 0] - exact).max() < 0.01 * exact.max()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("time_constant", [5.0, pytest.param(0.0, marks=pytest.mark.interop)])
 def test_a_new_station_is_reached_without_going_too_far(time_constant):
     goal = (5.0, 5.0, math.radians(10.0))

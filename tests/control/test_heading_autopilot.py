@@ -80,11 +80,13 @@ def steered(disturbance, stop, reference=0.0, **gains):
 DISTURBANCE = (0.01 * U**2 / L, 0.1 * (U / L) ** 2)  # dimensionless: (0.01, 0.1)
 
 
+@pytest.mark.slow
 def test_pd_control_leaves_the_offset_of_the_steady_equations():
     # -inv([[A1, B1], [A3, B2]]) d gives v and delta; the heading is delta / K.
     assert steered(DISTURBANCE, 900.0)[-1] == pytest.approx(0.02729786, abs=2e-8)
 
 
+@pytest.mark.slow
 def test_integral_action_removes_the_offset():
     heading = steered(DISTURBANCE, 1800.0, integral_gain=0.006)
     assert abs(heading[-1]) < 1e-8

@@ -60,6 +60,7 @@ def test_a_velocity_over_ground_turns_back_as_the_axes_turn_across_north():
     np.testing.assert_allclose(found[1:, 2], rate, rtol=1e-12)
 
 
+@pytest.mark.slow
 def test_noise_of_the_acceleration_walks_away():
     """Standard deviation s sqrt(period t): 1,000 walks estimate it within 10 % (4.5 sigma)."""
     noise, steps, random = 0.024, 100, np.random.default_rng(5)
@@ -166,6 +167,7 @@ def test_the_yaw_rate_loses_the_gyro_s_bias_across_north():
     assert np.abs(off - math.pi).max() < 5e-3
 
 
+@pytest.mark.slow
 def test_a_model_brings_the_velocity_to_where_thrust_is_drag():
     """At rest for the accelerometer: E (t1 + t2) = d u + q u^2 has u, and no sway comes of it."""
     row = {

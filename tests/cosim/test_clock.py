@@ -84,12 +84,14 @@ def test_steps_that_are_always_too_long_drift_by_their_excess(factor: float) -> 
         assert (pacer.lost_ns, pacer.drift_ns) == (3 * lost, 3 * n)
 
 
+@pytest.mark.slow
 def test_rounding_does_not_add_up() -> None:
     points, pacer = presented([1000] * 300_000, 3.0, "catch-up")
     assert points[-1] == 1_000_000 * MS  # 3000 s of simulated time
     assert pacer.overruns.count == 0
 
 
+@pytest.mark.slow
 @given(st.lists(st.integers(0, 40 * MS), min_size=1, max_size=60))
 def test_the_points_follow_the_recursion_of_each_policy(work: list[int]) -> None:
     caught, _ = presented(work, 1.0, "catch-up")

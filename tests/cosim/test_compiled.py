@@ -159,6 +159,7 @@ def called_from_c(path: Path) -> set[tuple[str, str]]:
         system.free()
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("algorithm", ALGORITHMS)
 @pytest.mark.parametrize("seed", range(12))
 def test_random_graphs_have_the_same_bits(fmus: Path, algorithm: str, seed: int) -> None:
@@ -262,6 +263,7 @@ forces = {{ sum = {{ inputs = 2, dimension = 2 }} }}
     assert {(n, c) for n in ("total", "forces") for c in ("SetReal", "GetReal")} <= asked
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("algorithm", ALGORITHMS)
 def test_fmus_of_fmi_3_are_called_from_c(fmus: Path, algorithm: str) -> None:
     """Numbers and whole arrays; early returns, the end; their texts and other types by Python."""

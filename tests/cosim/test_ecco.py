@@ -47,6 +47,7 @@ def watched(master: Master) -> list[tuple[float, float, dict[str, float]]]:
     return steps
 
 
+@pytest.mark.slow
 def test_a_fourth_of_the_tolerance_is_half_of_the_error(direct: Bench) -> None:
     """Lost energy is of second order in h, the solution of first: h ~ tolerance^(1/2)."""
     errors, lengths = [], []
@@ -62,6 +63,7 @@ def test_a_fourth_of_the_tolerance_is_half_of_the_error(direct: Bench) -> None:
     assert [b / a for a, b in itertools.pairwise(lengths)] == pytest.approx([2.0] * 2, rel=0.1)
 
 
+@pytest.mark.slow
 def test_each_step_loses_the_energy_of_the_tolerance(direct: Bench) -> None:
     """h |v_new F_old - F_new v_old|, summed up by hand, settles at alpha^(1/I) of the tolerance."""
     given = f'{WIDE}, step = "0.1 ms", absolute_tolerance = 1e-5, relative_tolerance = 0.0'
@@ -108,6 +110,7 @@ def test_limits_of_length_and_change(direct: Bench) -> None:
     assert "missed the tolerance of the power bonds at ecco.min_step, 0.002 s" in tight.notes()[1]
 
 
+@pytest.mark.slow
 def test_factors_of_a_bond_are_those_of_its_connections(direct: Bench) -> None:
     """A force that is given with the other sign, and turned on its way, is the same bond."""
     text = (direct.folder / "bodies.py").read_text("utf-8")
@@ -125,6 +128,7 @@ def test_factors_of_a_bond_are_those_of_its_connections(direct: Bench) -> None:
     assert positions[0] == positions[1]
 
 
+@pytest.mark.slow
 def test_saved_and_restored_it_goes_on_the_same(direct: Bench) -> None:
     master = two_bodies(direct, step="50 ms")
     for _ in range(4):
@@ -161,6 +165,7 @@ def test_discarded_steps_are_repeated_in_smaller_ones(direct: Bench) -> None:
     assert any("were discarded" in note for note in master.notes())
 
 
+@pytest.mark.slow
 def test_a_rig_as_an_fmu_takes_the_same_steps(direct: Bench) -> None:
     system = direct.system(TWO_BODIES, BODY_CONNECTIONS, top=top("50 ms"))
     rig = rig_source(system, face_of(system), "rig").component_class()("rig")

@@ -61,6 +61,7 @@ def rig(fmu: str, step: str, carrier: str = "", **options: str) -> str:
     return f'{top}step = "{step}"\n[components]\na = {{ fmu = "{fmu}"{isolated} }}\n'
 
 
+@pytest.mark.sampled(18)
 @pytest.mark.parametrize("carrier", CARRIERS)
 @pytest.mark.parametrize("milliseconds", MILLISECONDS)
 def test_every_step_begins_where_the_one_before_ended(
@@ -99,6 +100,7 @@ def test_lengths_end_at_the_next_time() -> None:
             assert interval(t_ns, h_ns, constant=True) == (t_ns / NS, h_ns / NS)
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("carrier", CARRIERS)
 @pytest.mark.parametrize("algorithm", ["jacobi", "gauss-seidel", "iterated"])
 def test_an_fmu_that_waits_for_the_word_moves(fmus: Path, carrier: str, algorithm: str) -> None:

@@ -90,6 +90,7 @@ def test_every_fault_of_a_signal_is_tested() -> None:
     assert {name.partition(",")[0] for name in KINDS} | RANDOM == set(SIGNALS)
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("name", KINDS)
 def test_an_output_is_what_the_definition_says(bench: Bench, name: str) -> None:
     settings, expected = KINDS[name]

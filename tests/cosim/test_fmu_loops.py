@@ -40,6 +40,7 @@ def rig(fmus: Path, version: int, back: str, *, isolated: bool) -> Master:
     return Master(assemble(load_rig(str(file))))
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("isolated", [False, True])
 @pytest.mark.parametrize("version", [1, 2, 3])
 def test_a_loop_that_repels_iteration_is_solved(fmus: Path, version: int, isolated: bool) -> None:

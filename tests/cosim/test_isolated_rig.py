@@ -222,6 +222,7 @@ def interrupted(folder: Path, how: str, times: int) -> tuple[str, list[list[str]
     return stderr, rows(folder / "run")
 
 
+@pytest.mark.slow
 def test_an_interrupt_stops_the_run_after_the_step(trial, tmp_path: Path) -> None:
     trial('timeout = "60 s"')
     stderr, record = interrupted(tmp_path, "fine", 1)

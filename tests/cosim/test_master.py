@@ -43,6 +43,7 @@ def test_plain_jacobi_delays_each_hop_by_one_step(bench: Bench) -> None:
         assert value(master, f"a{i}.y") == pytest.approx((30 - i - 1) / 10 + i + 1, abs=1e-14)
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("every", [1, 4])
 @pytest.mark.parametrize("names", [["ramp.y"], ["a0.y", "ramp.y"]])
 def test_a_block_of_steps_leaves_the_points_in_between(

@@ -39,6 +39,7 @@ def reach(graph: Graph) -> dict[str, set[str]]:
     return found
 
 
+@pytest.mark.slow
 @given(graphs())
 def test_groups_are_the_strongly_connected_components(graph: Graph) -> None:
     depends = reach(graph)
@@ -88,6 +89,7 @@ def test_a_long_chain_and_a_long_loop_need_no_recursion() -> None:
     assert ordered_groups(loop) == [list(range(n + 1))]
 
 
+@pytest.mark.slow
 def test_order_is_the_same_whatever_the_hash_seed() -> None:
     code = (
         "from seatrial.sim.order import ordered_groups\n"

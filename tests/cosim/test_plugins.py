@@ -91,6 +91,7 @@ print(master.signals[master.names.index(("decay", "x"))], *master.notes(), sep="
 """
 
 
+@pytest.mark.slow
 @needs_kits("nmea")
 def test_a_rig_runs_with_an_algorithm_and_a_transport_of_a_package(
     write, tmp_path: Path, direct

@@ -23,6 +23,7 @@ CONNECTIONS = """
 STATISTICS = frozenset({"times", "_checkpoint"})
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize(
     "algorithm", ["jacobi", "plain-jacobi", "gauss-seidel", "extrapolated", "iterated"]
 )

@@ -98,6 +98,7 @@ needs_bwrap = pytest.mark.skipif(
 )
 
 
+@pytest.mark.slow
 @needs_bwrap
 def test_nothing_outside_is_reached(listening, write, tmp_path: Path, monkeypatch) -> None:
     monkeypatch.setenv("SEATRIAL_TEST_SECRET", "the token")
@@ -121,6 +122,7 @@ def test_nothing_outside_is_reached(listening, write, tmp_path: Path, monkeypatc
     assert found["environment"] is None
 
 
+@pytest.mark.slow
 @needs_bwrap
 def test_its_end_is_ours(write, tmp_path: Path) -> None:
     """A component that never returns is ended, with all that the sandbox holds."""
@@ -161,6 +163,7 @@ class Greedy(Component):
 LIBC = "import ctypes; libc = ctypes.CDLL(None); libc.malloc.restype = ctypes.c_void_p"
 
 
+@pytest.mark.slow
 @needs_bwrap
 @pytest.mark.parametrize(
     ("takes", "said"),
@@ -241,6 +244,7 @@ class Liar(Component):
 """
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize(
     "answer",
     [

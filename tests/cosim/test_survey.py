@@ -35,6 +35,7 @@ def surveyed(folder: Path) -> dict[str, Surveyed]:
     return {one.path.stem: one for one in survey(fmus_in(folder), TIMEOUT_S)}
 
 
+@pytest.mark.slow
 def test_our_fmus_agree_with_fmpy_by_every_carrier(tmp_path: Path) -> None:
     servo, gnss = (named_sources()[name] for name in ("servo", "gnss"))
     platform = ["linux64"]
@@ -51,6 +52,7 @@ def test_our_fmus_agree_with_fmpy_by_every_carrier(tmp_path: Path) -> None:
         assert all(apart.value == 0.0 for apart in one.differences.values()), one
 
 
+@pytest.mark.slow
 def test_models_in_c_agree_with_fmpy(tmp_path: Path) -> None:
     (tmp_path / "it").mkdir()
     for version, interface in ((1, "co-simulation"), (1, "model exchange"), (2, ""), (3, "")):
@@ -63,6 +65,7 @@ def test_models_in_c_agree_with_fmpy(tmp_path: Path) -> None:
     assert {name: one.status for name, one in found.items()} == dict.fromkeys(found, "agrees")
 
 
+@pytest.mark.slow
 def test_slaves_in_c_agree_with_fmpy(native_fmu: Callable[[str], Path], tmp_path: Path) -> None:
     for name in ("fmi2", "fmi3"):
         shutil.copyfile(native_fmu(name), tmp_path / f"{name}.fmu")
@@ -71,6 +74,7 @@ def test_slaves_in_c_agree_with_fmpy(native_fmu: Callable[[str], Path], tmp_path
     assert {name: one.status for name, one in found.items()} == dict.fromkeys(found, "agrees")
 
 
+@pytest.mark.slow
 def test_fmus_that_cannot_be_are_lines_with_the_reason(
     native_fmu: Callable[[str], Path], tmp_path: Path
 ) -> None:
@@ -87,6 +91,7 @@ def test_fmus_that_cannot_be_are_lines_with_the_reason(
     assert result["good.fmu"]["differences"]["in C"]["relative"] == 0.0
 
 
+@pytest.mark.slow
 def test_a_difference_is_named_and_decides_the_status(
     native_fmu: Callable[[str], Path],
     tmp_path: Path,
@@ -110,6 +115,7 @@ def test_a_difference_is_named_and_decides_the_status(
     assert re.search(r"    in C: \S+ by 1e-06 at t = 0.0234375 s\n", said)
 
 
+@pytest.mark.slow
 def test_an_fmu_without_outputs_agrees_with_nobody(
     native_fmu: Callable[[str], Path], tmp_path: Path
 ) -> None:
@@ -124,6 +130,7 @@ def test_an_fmu_without_outputs_agrees_with_nobody(
     assert one["ways"] == list(EVERY)
 
 
+@pytest.mark.slow
 def test_a_run_that_ends_elsewhere_differs_without_bounds(
     native_fmu: Callable[[str], Path], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -144,6 +151,7 @@ def test_an_fmu_that_opens_links_is_not_run(tmp_path: Path) -> None:
     assert one.unfit.startswith("it would open its links: ")
 
 
+@pytest.mark.slow
 def test_folders_of_any_name_do(native_fmu: Callable[[str], Path], tmp_path: Path) -> None:
     folder = tmp_path / 'Bäu 🐳 {x} "50%"'
     folder.mkdir()

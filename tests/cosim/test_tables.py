@@ -75,6 +75,7 @@ def test_a_bad_file_is_an_error_of_the_rig(tmp_path: Path) -> None:
         assemble(load_rig(str(path)))
 
 
+@pytest.mark.slow
 def test_a_rig_with_a_table_is_one_fmu(tmp_path: Path) -> None:
     from typer.testing import CliRunner
 

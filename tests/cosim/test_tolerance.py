@@ -44,6 +44,7 @@ def tolerances(path: Path, text: str) -> dict[str, float]:
         system.free()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["fmi2", "fmi3"])
 def test_the_nearest_counts(fmus: Path, name: str) -> None:
     components = f"""

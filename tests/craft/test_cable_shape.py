@@ -65,6 +65,7 @@ def test_second_order_of_the_elastic_catenary():
     np.testing.assert_allclose(errors[:3], [0.090, 0.0220, 0.00549], rtol=5e-3)
 
 
+@pytest.mark.slow
 def test_tension_of_a_neutral_cable_without_friction_is_constant():
     """Loads across the cable turn its tension and leave the size: in the limit of many segments."""
     exact, errors = math.hypot(3.0, 10.0), []

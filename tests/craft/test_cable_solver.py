@@ -133,6 +133,7 @@ def stepped(one, start, times, h):
     return found
 
 
+@pytest.mark.slow
 def test_the_step_converges_with_first_order():
     one = cable(10, tangential_drag=0.02)
     times = 0.1 * np.arange(1, 16)
@@ -146,6 +147,7 @@ def test_the_step_converges_with_first_order():
     assert errors[1] < 4e-3  # m, of 0.8 m of motion
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "stiffness", [1e7, *(pytest.param(x, marks=pytest.mark.interop) for x in (2e4, 1e5))]
 )

@@ -42,6 +42,7 @@ def orders(net=0.0, ahead=0.0, aside=0.0):
     return {"ballast_order": [-net / (RHO * ENGINE), ahead / TRAVEL, aside / SIDEWAYS] + 5 * [0]}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("path", "speed"), [(-PATH, 0.3), (PATH, 0.5)])
 def test_a_steady_glide_is_that_of_graver(path, speed):
     theta, alpha, net, ahead = steady(path, speed)

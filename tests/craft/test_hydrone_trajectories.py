@@ -46,6 +46,7 @@ def peak(values, first=0):
     return values[k], k
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "pad", ["diagonal-fore", *(pytest.param(p, marks=pytest.mark.interop) for p in CSV_PADS[:-1])]
 )

@@ -86,6 +86,7 @@ def test_trajectories_are_those_computed_independently(run, variant):
     assert_met(found.x, names, COLUMNS, tolerance=1e-7, least=0.0)
 
 
+@pytest.mark.slow
 def test_a_turn_in_a_current_is_that_computed_independently():
     expected, (times, angles), vessel = recorded("full_turn_p35_current", "ship")
     vessel.set("current_speed", math.hypot(*CURRENT))

@@ -110,6 +110,7 @@ def test_legs_downhill_carry_more_by_the_moment_of_the_weight():
     assert 2 * (port + starboard) == pytest.approx(WEIGHT * math.cos(a), rel=1e-3)
 
 
+@pytest.mark.slow
 def test_it_tips_where_the_weight_passes_its_feet():
     rate = math.radians(1.0)
     tipping = parked(30.0, 2.0, damping=5.0)

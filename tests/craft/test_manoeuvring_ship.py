@@ -58,6 +58,7 @@ def test_responses_of_the_source_s_loop(file, start, reference):
         assert np.abs(values - expected[name]).max() < 5.1e-9 * np.abs(values).max(), name
 
 
+@pytest.mark.slow
 def test_overshoot_rise_and_settling_of_a_step():
     t = np.arange(0.0, 20.0, 0.005)
     psi = dimensionless().reference(t, pd(1.0))["eta.psi"]

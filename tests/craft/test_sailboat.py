@@ -201,6 +201,7 @@ def test_no_steady_state_is_an_error():
 
 
 # Best speed over sail (2.5 deg) and flap (5 deg), 5 m/s of wind: attached, rudder below 12 deg.
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("wind_angle", "speed"),
     [
@@ -297,6 +298,7 @@ def carried(current, **changes):
 LEVEL = {"sail_axis.z": 0.0, "keel_place.z": 0.0, "rudder_place.z": 0.0}
 
 
+@pytest.mark.slow
 def test_a_current_carries_a_level_boat_exactly():
     still, moving = carried((0.0, 0.0), **LEVEL), carried((0.6, -0.8), **LEVEL)
     # The tables' kinks limit what the integrator reaches.

@@ -210,6 +210,7 @@ def test_a_long_following_sea_pushes_a_hull_as_the_water_that_it_displaces(kind)
         assert met(t, state)[9] == pytest.approx(density * 0.16 * surging, rel=0.01)
 
 
+@pytest.mark.slow
 def test_a_saved_state_goes_on_in_the_same_sea():
     hull = barge(sea_period=2.0)
     states(hull, 1.0, 0.02)

@@ -437,6 +437,7 @@ def test_the_layers_of_a_trials_current_are_the_profile_of_the_cable():
     np.testing.assert_allclose(layers.get("force"), profile.get("force"), rtol=1e-4)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("direction", [0.0, 2.0])
 def test_waves_drag_a_taut_cable(direction):
     height, period, top, bottom, segments = 0.1, 6.0, 2.0, 12.0, 40

@@ -137,6 +137,7 @@ def test_level_course_is_unstable_above_a_speed_of_routh_and_hurwitz():
 # ---------------------------------------------------------------------- reference data
 
 
+@pytest.mark.slow
 def test_level_motion_under_pi_control_is_that_of_the_surface_vessel():
     """The law of the reference, every 0.1 s and held, on the vehicle without quadratic drag."""
     with (DATA / "videoray_pi_case1_physical.csv").open() as file:

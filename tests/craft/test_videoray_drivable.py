@@ -115,6 +115,7 @@ def held():
     return commands
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "commands", "stop", "depth", "tolerance"),
     [

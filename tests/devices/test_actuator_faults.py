@@ -57,6 +57,7 @@ thruster = pytest.mark.parametrize("cls", THRUSTERS, ids=lambda cls: cls.__name_
 shaft = pytest.mark.parametrize("cls", SHAFTS, ids=lambda cls: cls.__name__)
 
 
+@pytest.mark.sampled(3)
 @every
 @pytest.mark.parametrize("fault", FAULTS)
 def test_it_acts_while_it_lasts(cls, fault):
@@ -173,6 +174,7 @@ def test_delayed_follows_what_was_wanted_half_a_second_ago(cls):
         assert failed[inside] == pytest.approx(healthy[inside], rel=1e-12)
 
 
+@pytest.mark.slow
 def test_garbage_is_uniform_over_the_range_and_another_every_interval():
     port, _, _ = ALL[ForceActuator]
     ship = started(ForceActuator, fault="garbage")
@@ -185,6 +187,7 @@ def test_garbage_is_uniform_over_the_range_and_another_every_interval():
     assert np.abs(share - (np.arange(n) + 0.5) / n).max() < 2.2 / math.sqrt(n)
 
 
+@pytest.mark.slow
 def test_intermittent_is_off_in_half_of_the_intervals():
     ship = started(ForceActuator, fault="intermittent")
     wanted = {"demand": [7.0, 8.0, 9.0]}

@@ -95,6 +95,7 @@ def rocking(statistics):
     return np.column_stack([phi, theta, np.full(N, 46.11 * DEG)]).tolist()
 
 
+@pytest.mark.slow
 def test_a_dry_vehicle_reads_gravity_as_what_the_source_took_for_offsets():
     attitude = (DRY["phi"][0] * DEG, DRY["theta"][0] * DEG, 193.96 * DEG)
     euler, acceleration = readings([attitude] * N)
@@ -112,6 +113,7 @@ def test_a_dry_vehicle_reads_gravity_as_what_the_source_took_for_offsets():
     np.testing.assert_allclose(euler.std(axis=0) / DEG, expected, rtol=0.1)
 
 
+@pytest.mark.slow
 def test_a_rocking_vehicle_reads_gravity_as_what_the_source_took_for_a_disturbance():
     _, acceleration = readings(rocking(POOL))
     found_mean, found = 100 * acceleration.mean(axis=0), 100 * acceleration.std(axis=0)
@@ -125,6 +127,7 @@ def test_a_rocking_vehicle_reads_gravity_as_what_the_source_took_for_a_disturban
         assert abs(found_mean[axis] - mean) < 0.015 * mean + deviation * MEAN_OF, name
 
 
+@pytest.mark.slow
 def test_gravity_taken_off_with_the_measured_attitude_leaves_the_noise():
     euler, acceleration = readings(rocking(POOL))
     gravity = np.array(

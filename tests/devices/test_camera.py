@@ -87,6 +87,7 @@ def test_the_lever_arm():
     assert seen.get("bearing")[0] == pytest.approx(math.atan2(-2.0, 9.0))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("probability", [0.9, 0.3])
 def test_missed_detections(probability):
     count = 2000
@@ -95,6 +96,7 @@ def test_missed_detections(probability):
     assert low <= seen <= high
 
 
+@pytest.mark.slow
 def test_false_detections():
     count, share = 4000, 0.05
     component = camera(diameter=0.0, false_detection=share, seed=3)

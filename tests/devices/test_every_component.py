@@ -135,6 +135,7 @@ def ideal(cls):
     return {**cls.exercised, **none}
 
 
+@pytest.mark.sampled(9)
 @every
 def test_what_acts_at_once_is_known(cls):
     through = feedthrough_of(cls)

@@ -70,6 +70,7 @@ def test_white_noise_is_independent_of_axis_and_time():
         assert abs(np.corrcoef(y[lag:, 0], y[:-lag, 0])[0, 1]) < bound
 
 
+@pytest.mark.slow
 def test_allan_deviation_of_white_noise_falls_with_the_square_root():
     n = 20_000
     y = series(n, y_noise=1.0)[:, 0]
@@ -81,6 +82,7 @@ def test_allan_deviation_of_white_noise_falls_with_the_square_root():
         assert allan == pytest.approx(1.0 / math.sqrt(length), rel=bound)
 
 
+@pytest.mark.slow
 def test_slow_bias_is_stationary_with_its_correlation_time():
     # Over many seeds: b_k has variance s^2, and covariance s^2 exp(-k T / tau) with b_0.
     n, lag, s = 3000, 4, 0.3

@@ -117,6 +117,7 @@ def test_all_with_a_heading_are_here():
     }
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("cls", WITH_HEADING, ids=lambda cls: cls.__name__)
 @pytest.mark.parametrize("angle", [0.7, math.pi / 2, -2.5])
 def test_turning_the_world_turns_the_answer(cls, angle):

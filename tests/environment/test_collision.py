@@ -111,6 +111,7 @@ def test_neither_of_the_two_is_the_first(seed):
     np.testing.assert_allclose(one, other, rtol=1e-9, atol=1e-9)
 
 
+@pytest.mark.slow
 def test_a_central_impact_separates_them_by_the_restitution_of_the_law():
     _, bodies, _ = run(0.0, h=5e-4, second_length=0.5, damping=0.4)
     # the second is a sphere: its heading does not matter

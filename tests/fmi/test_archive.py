@@ -251,6 +251,7 @@ def test_how_much_an_archive_may_grow(cache: Path, tmp_path: Path, monkeypatch) 
     assert (unpacked(stored, "FMU") / "data").stat().st_size == 2**20
 
 
+@pytest.mark.slow
 def test_the_bounds_as_they_are(cache: Path, tmp_path: Path) -> None:
     """300 MB of zeros in 300 kB, and one folder more than allowed in names alone."""
     path = tmp_path / "x.fmu"
@@ -321,6 +322,7 @@ def test_a_bomb_that_lies_writes_no_more_than_it_says(
 WHOLE = [("modelDescription.xml", b"<a/>" * 50), ("binaries/linux64/x.so", bytes(range(256)))]
 
 
+@pytest.mark.slow
 def test_truncated_at_any_byte(cache: Path, tmp_path: Path) -> None:
     path = zipped(tmp_path / "x.fmu", *WHOLE)
     whole = path.read_bytes()

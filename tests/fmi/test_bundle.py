@@ -112,6 +112,7 @@ def test_an_fmu_carries_no_more_than_it_imports(counter_fmu: Path) -> None:
     assert {n.split("/")[1] for n in names if n.startswith("binaries/")} == {"linux64", "win64"}
 
 
+@pytest.mark.slow
 def test_a_missing_package_is_named_with_its_cure(write, tmp_path: Path) -> None:
     write("packages/only_here/__init__.py", "X = 1\n")
     file = write(

@@ -69,6 +69,7 @@ def test_every_kind_ticks_at_its_time_whatever_the_step(clocks, step: Fraction) 
         assert row == expected((k + 1) * step), (k + 1) * step
 
 
+@pytest.mark.slow
 def test_ticks_do_not_drift(clocks) -> None:
     """After 300 ticks a third of a second is still one, to the nanosecond."""
     instance = clocks()

@@ -47,6 +47,7 @@ def test_declarations_arrive_exactly(counter_fmu: Path) -> None:
     assert simulation.canSerializeFMUstate
 
 
+@pytest.mark.slow
 def test_each_axis_has_its_unit(tmp_path: Path) -> None:
     path = built_once(shipped_sources()["sailboat"], tmp_path / "sailboat.fmu")
     units = {v.name: v.unit for v in read_model_description(str(path)).modelVariables}
@@ -105,6 +106,7 @@ def test_what_cannot_be_described_is_refused(
     assert not (tmp_path / "odd.fmu").exists()
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize(
     "name",
     [

@@ -16,6 +16,7 @@ print("done", flush=True)
 """
 
 
+@pytest.mark.slow
 def test_python_hosts_end_well(counter_fmu: Path) -> None:
     for _ in range(3):
         command = [sys.executable, "-c", HOST, str(counter_fmu)]

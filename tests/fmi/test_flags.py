@@ -15,6 +15,7 @@ from .native import changed, read, started, variant
 LOGGING, EARLY, EVENTS, REQUIRED, UPDATES = 1, 2, 4, 8, 16
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("isolated", [False, True])
 @pytest.mark.parametrize(
     ("has_events", "flags"), [(True, LOGGING | EARLY | EVENTS), (False, LOGGING | EARLY)]

@@ -68,6 +68,7 @@ VALUES = {
 }
 
 
+@pytest.mark.sampled(5)
 @pytest.mark.parametrize("name", VALUES)
 @pytest.mark.parametrize("when", ["before", "while stepping"])
 def test_arrays_of_every_type(name: str, when: str, fmi3) -> None:

@@ -158,6 +158,7 @@ def _hosted(path: Path, folder: Path, *arguments: str) -> Any:
     return json.loads(done.stdout.splitlines()[-1])
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("kind", ["python 2", "python 3", "native 2", "native 3"])
 def test_what_fmi_does_not_allow_is_refused_and_does_no_harm(
     kind: str, built: Callable[[str], Path], tmp_path: Path
@@ -179,6 +180,7 @@ def test_what_fmi_does_not_allow_is_refused_and_does_no_harm(
     assert not answers
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "kind",
     [

@@ -92,6 +92,7 @@ def folder(tmp_path: Path) -> Path:
     return tmp_path
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("engine", ["direct", "fmu"])
 def test_a_packages_component_runs_in_a_rig_with_its_profile(
     engine: str, site: Path, folder: Path
@@ -101,6 +102,7 @@ def test_a_packages_component_runs_in_a_rig_with_its_profile(
     assert (folder / "out/signals.csv").read_text().splitlines()[-1].endswith(",15.0")
 
 
+@pytest.mark.slow
 def test_its_fmu_carries_its_package(site: Path, folder: Path) -> None:
     assert "acme-sounder" in seatrial(site, "fmu", "list", cwd=folder).stdout
     done = seatrial(site, "fmu", "build", "acme-sounder", "--out", "built", cwd=folder)

@@ -114,6 +114,7 @@ def test_every_bit_of_a_real_number_arrives(bits: int, opened: Opener, crash_fmu
     assert struct.pack("<d", *instance.reader(["real"])()) == struct.pack("<Q", bits)
 
 
+@pytest.mark.slow
 def test_every_type_of_fmi_3_crosses(opened: Opener, tmp_path: Path) -> None:
     fmu = load_fmu(build_native_fmu("fmi3", tmp_path / "fmi3"))
     inputs = [v for v in fmu.variables.values() if v.name.startswith("in_")]
@@ -204,6 +205,7 @@ def test_a_crash_at_the_start_names_the_initialisation(opened: Opener, python_fm
         opened(python_fmu, how="at the start")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "how",
     ["sleep", *(pytest.param(how, marks=pytest.mark.interop) for how in ("spin", crashing.HANG))],
@@ -320,6 +322,7 @@ def resources() -> tuple[int, list[str], list[str]]:
     return len(os.listdir("/proc/self/fd")), children, os.listdir(os.environ["TMPDIR"])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("cycles", [5, pytest.param(200, marks=pytest.mark.long)])
 def test_nothing_is_left_of_instances(cycles: int, crash_fmu, tmp_path, monkeypatch) -> None:
     monkeypatch.setenv("TMPDIR", str(tmp_path))

@@ -168,6 +168,7 @@ def run(connected: list[tuple[End, End]], steps: int, h: float) -> list[tuple[fl
 # ------------------------------------------------------------------ what the files say
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "terminals", "is_bus"),
     [

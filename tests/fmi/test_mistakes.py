@@ -166,6 +166,7 @@ def test_attributes_of_ones_own_are_no_mistakes(cls: type[Component]) -> None:
     check(cls)
 
 
+@pytest.mark.sampled(5)
 @pytest.mark.parametrize("name", components().names())
 def test_of_every_shipped_component_it_is_known_what_acts_at_once(name: str) -> None:
     assert check(component_class(name)).undecided == ""

@@ -50,6 +50,7 @@ def only(native_fmu, tmp_path: Path):
     return make
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", KINDS)
 def test_three_in_a_rig_are_three(kind: str, only, write) -> None:
     with Simulation(write("rig.toml", _DECAYS.format(fmu=only(kind))), engine="fmu") as simulation:
@@ -58,6 +59,7 @@ def test_three_in_a_rig_are_three(kind: str, only, write) -> None:
     assert found == pytest.approx([math.exp(-k) for k in (1, 2, 3)], rel=1e-12)
 
 
+@pytest.mark.slow
 def test_a_run_finds_nothing_that_another_in_this_process_has_left(only, write) -> None:
     rig = write("rig.toml", f'step = "100 ms"\n[components]\na = {{ fmu = "{only("fmi2")}" }}\n')
     gains = []
@@ -69,6 +71,7 @@ def test_a_run_finds_nothing_that_another_in_this_process_has_left(only, write) 
     assert gains[1] == (0.0, pytest.approx(math.exp(-0.5), rel=1e-12))
 
 
+@pytest.mark.slow
 def test_those_in_rigs_within_a_rig_are_isolated_too(only, write) -> None:
     fmu = only("fmi2")
     write("inner.toml", f'step = "100 ms"\n[components]\na = {{ fmu = "{fmu}" }}\n')
@@ -94,6 +97,7 @@ def _packages(fmu: Path, folder: Path) -> Iterator:
     yield read_osp(folder)
 
 
+@pytest.mark.slow
 def test_packages_of_other_tools_have_as_many_as_they_say(only, tmp_path: Path) -> None:
     for read in _packages(only("fmi2"), tmp_path):
         system = assemble(read.rig)

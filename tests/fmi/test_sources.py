@@ -181,6 +181,7 @@ def test_every_version_and_interface(version: int, interface, tmp_path: Path) ->
     assert trajectory(open_instance(other, "a")) == trajectory(open_instance(one, "a"))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("version", [2, 3])
 def test_our_own_native_fmus_are_built_of_their_sources(version: int, tmp_path: Path) -> None:
     path = tmp_path / "own.fmu"
@@ -270,6 +271,7 @@ def test_a_static_library_of_the_fmu_that_is_not_there(tmp_path: Path) -> None:
         open_instance(load_fmu(path), "a")
 
 
+@pytest.mark.slow
 def test_isolated_it_is_the_same(tmp_path: Path) -> None:
     path = source_fmu(tmp_path / "x.fmu", {"fmi2.c": TWO})
     fmu = load_fmu(path)
@@ -277,6 +279,7 @@ def test_isolated_it_is_the_same(tmp_path: Path) -> None:
     assert isolated == trajectory(open_instance(fmu, "b"), k=0.7)
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(shutil.which("bwrap") is None, reason="there is no bubblewrap")
 def test_sandboxed_a_build_sees_no_files_of_the_user(tmp_path: Path) -> None:
     own = tmp_path / "secret.h"

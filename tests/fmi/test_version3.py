@@ -61,6 +61,7 @@ def _valid(archive: zipfile.ZipFile, member: str, schema: str) -> Any:
     return root
 
 
+@pytest.mark.slow
 def test_files_are_valid_and_all_functions_exported(tmp_path: Path) -> None:
     path = native("gnss", tmp_path)
     assert validate_fmu(str(path)) == []
@@ -261,6 +262,7 @@ def _opened(
     return slave, {v.name: v.valueReference for v in model.modelVariables}, messages
 
 
+@pytest.mark.slow
 def test_bytes_and_arrays_of_a_python_component(tmp_path: Path) -> None:
     path = python(f"{__file__}:Echo", tmp_path)
     assert validate_fmu(str(path)) == []

@@ -90,6 +90,7 @@ def test_an_interrupt_in_the_terminal_does_not_reach_the_worker(crash_fmu) -> No
     assert (out, err, process.returncode) == ("stepped\n", "", 0)
 
 
+@pytest.mark.slow
 def test_an_interrupt_ends_the_wait_and_the_worker(crash_fmu) -> None:
     process, pid = parent(crash_fmu, crashing.HANG)
     process.stdin.write("\n")

@@ -154,6 +154,7 @@ DIFFERENCES = [
 ]  # fmt: skip
 
 
+@pytest.mark.sampled(5)
 @pytest.mark.parametrize(
     ("ssd", "members", "tool", "said", "expected"),
     [case[1:] for case in DIFFERENCES],

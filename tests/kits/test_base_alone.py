@@ -108,6 +108,7 @@ COMMANDS = {
 }
 
 
+@pytest.mark.sampled(5)
 @pytest.mark.parametrize("command", COMMANDS)
 def test_a_command_says_the_line_or_does_its_work(folder: Path, command: str) -> None:
     if not (folder / "runs/quick").exists():
@@ -119,6 +120,7 @@ def test_a_command_says_the_line_or_does_its_work(folder: Path, command: str) ->
     assert said in done.stderr
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("command", sorted({each.partition(" ")[0] for each in examples()}))
 def test_every_help_needs_none(folder: Path, command: str) -> None:
     done = alone(folder, command, "--help")

@@ -160,6 +160,7 @@ def test_what_needs_a_kit_that_is_left_out_is_left_out(kit: Callable[..., Path])
     }
 
 
+@pytest.mark.slow
 def test_the_entry_point_of_a_removed_kit_is_no_error(
     kit: Callable[..., Path], tmp_path: Path
 ) -> None:
@@ -191,6 +192,7 @@ def test_a_manifest_that_is_not_there(tmp_path: Path) -> None:
         read_kit("x", tmp_path)
 
 
+@pytest.mark.slow
 @needs_kits("can", "mavlink", "native", "search")
 def test_old_import_paths_are_the_same_modules() -> None:
     modules = "\n".join(

@@ -31,7 +31,7 @@ def needing(kit: str) -> list[str]:
 def passes(copy: Path, *tests: str) -> None:
     python = str(copy / ".venv/bin/python")
     ignored = [f"--ignore={path}" for path in WHOLE]
-    command = [python, "-m", "pytest", "-n", "auto", "-m", "not interop and not long"]
+    command = [python, "-m", "pytest", "-n", "auto", "-m", "not slow and not interop and not long"]
     done = subprocess.run(
         [*command, *ignored, "--tb=line", *tests], cwd=copy, capture_output=True, text=True
     )

@@ -47,6 +47,7 @@ def _nothing_allowed(monkeypatch):
         monkeypatch.delenv(variable, raising=False)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("link", "flags", "expected"),
     [
@@ -165,6 +166,7 @@ def test_every_component_says_which_key_it_is(name, given):
         made.initialise()
 
 
+@pytest.mark.slow
 def test_nothing_else_opens_sockets_or_ports():
     """Modules that could: one that is new must ask `hardware`, and be in a test above."""
     folder = Path(seatrial.__file__).parents[1]

@@ -62,6 +62,7 @@ def test_each_pair_is_among_the_chosen_cells() -> None:
     assert pairwise(CELLS) == pairwise(applying(every()))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("carrier", "event", "names"), SHARED)
 def test_pairs(carrier: str, event: str, names: list[str], tmp_path: Path) -> None:
     happens(carrier, event.partition(" of ")[0], names, tmp_path)

@@ -70,6 +70,7 @@ def test_it_does_not_repeat(records):
     assert np.max(np.abs(np.triu(np.corrcoef(hours), 1))) < 0.15
 
 
+@pytest.mark.slow
 def test_drawn_amplitudes_vary_about_those_of_the_spectrum():
     energies = [
         np.sum(

@@ -30,6 +30,7 @@ def fitted(body):
 
 # A wave trapped between its two hulls makes sharp peaks of the catamaran's radiation. The least
 # squares stop before they rest, elsewhere with another MINPACK: 0.054 with SciPy 1.17, 0.059 with 1.18.
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("body", "error"), [("barge_T020", 0.06), ("wigley_160", 0.025), ("cat_13", 0.1)]
 )
@@ -56,6 +57,7 @@ def test_it_says_what_it_misses_of_each_motion():
             assert memory.missed[n] < 0.02
 
 
+@pytest.mark.slow
 def test_one_motion_that_no_memory_gives_is_enough_to_refuse_and_is_named():
     # Its damping alternates from frequency to frequency; its group has an error of 17 %.
     w, added, damping, infinite = panels("barge_T020")
@@ -88,6 +90,7 @@ def test_its_states_are_its_response():
         np.testing.assert_allclose(force, memory.response(np.array([at]))[0], rtol=1e-9, atol=1e-9)
 
 
+@pytest.mark.slow
 def test_tables_that_no_memory_gives_are_refused():
     w, added, damping, infinite = panels("barge_T020")
     with pytest.raises(InputError, match="do not belong together"):

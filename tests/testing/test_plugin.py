@@ -77,6 +77,7 @@ def failure(project: Path, name: str) -> str:
     return "" if found is None else found.text or ""
 
 
+@pytest.mark.slow
 def test_what_holds_passes_and_what_does_not_fails(project: Path) -> None:
     found = cases(project / "junit.xml")
     passed = {name for name, case in found.items() if len(list(case.iter("failure"))) == 0}
@@ -121,6 +122,7 @@ def test_a_mistake_in_the_mark_is_explained(project: Path) -> None:
     assert "did you mean 'command'" in (project / "output.txt").read_text()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("engine", ["direct", "fmu"])
 def test_trials_in_toml_are_tests(tmp_path: Path, engine: str) -> None:
     (tmp_path / "rig.toml").write_text(RIG)
@@ -147,6 +149,7 @@ def test_toml_files_are_left_alone_unless_asked_for(tmp_path: Path) -> None:
     assert "no tests ran" in pytest_in(tmp_path).stdout
 
 
+@pytest.mark.slow
 def test_projects_without_trials_import_nothing(tmp_path: Path) -> None:
     (tmp_path / "test_other.py").write_text(
         "import sys\n\n\ndef test_modules():\n"

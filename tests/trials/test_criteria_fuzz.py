@@ -101,6 +101,7 @@ def meaning(tree, signals):
 ROWS = st.lists(st.floats(-100, 100), min_size=4, max_size=4).map(np.array)
 
 
+@pytest.mark.slow
 @given(TREES, st.sampled_from(["<", "<=", ">", ">="]), ROWS, ROWS, st.floats(-100, 100))
 def test_arithmetic_is_numpys(tree, operator, x, y, bound):
     text, tree = tree

@@ -87,6 +87,7 @@ def test_a_net_of_sobols_has_one_point_in_every_elementary_interval() -> None:
         assert len(np.unique(boxes)) == 64
 
 
+@pytest.mark.slow
 def test_discrepancy_is_that_of_the_kind() -> None:
     # Hickernell 1998: of n independent points the squared centred discrepancy is on average
     # ((5/4)^s - (13/12)^s) / n

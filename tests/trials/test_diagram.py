@@ -61,6 +61,7 @@ def within(inner: tuple[float, ...], outer: tuple[float, ...]) -> bool:
     )  # fmt: skip
 
 
+@pytest.mark.slow
 def test_a_shipped_rig_is_drawn_whole(tmp_path) -> None:
     done = seatrial("describe", "sil", "--vehicle", "gloria", "--diagram", "g.svg", cwd=tmp_path)
     assert done.returncode == 0, done.stderr

@@ -161,6 +161,7 @@ def test_a_text_can_end_a_run(trial, tmp_path):
     assert result.signals.t[-1] == pytest.approx(1.01)
 
 
+@pytest.mark.slow
 def test_the_shipped_landing_fails_as_published(tmp_path):
     result = seatrial.run_trial("hydrone-landing", out=tmp_path / "out")
     roll = result.verdicts[0]

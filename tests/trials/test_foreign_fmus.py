@@ -101,6 +101,7 @@ def test_criteria_hold_on_what_there_is(run, folder: Path) -> None:
     assert not result.passed
 
 
+@pytest.mark.slow
 def test_the_exit_status_is_that_of_the_verdicts(folder: Path, write, tmp_path: Path) -> None:
     path = build_model_fmu(2, folder)
     write("rig.toml", RIG.format(path=path, more="set.end = 0.42", other="set.k = 1.0"))

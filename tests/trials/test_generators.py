@@ -3,6 +3,7 @@
 import random
 
 import numpy as np
+import pytest
 
 import seatrial
 from tests.command import seatrial as command
@@ -30,6 +31,7 @@ def written(folder):
     return folder / "t.toml"
 
 
+@pytest.mark.slow
 def test_runs_are_alike_and_the_caller_s_generators_go_on(tmp_path):
     trial = written(tmp_path)
     random.seed(1)

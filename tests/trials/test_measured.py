@@ -29,6 +29,7 @@ def test_factors_hold_or_are_explained(name):
     assert {each["use"] for each in PUBLISHED[name]["figures"]} <= {"fitted", "checked"}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", PUBLISHED)
 def test_the_kept_figure_is_that_of_the_model(name):
     first = PUBLISHED[name]["figures"][0]

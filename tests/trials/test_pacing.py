@@ -107,6 +107,7 @@ def test_a_paced_run_lasts_as_long_and_records_the_same(factor, bench, tmp_path:
     assert "real_time" not in (tmp_path / "paced" / "manifest.json").read_text()
 
 
+@pytest.mark.slow
 def test_the_clock_starts_after_the_start(bench, write, tmp_path: Path) -> None:
     write("boat.py", BOAT + "\n    def start(self, t):\n        time.sleep(0.5)\n")
     _, timing = run(bench("real_time = { overrun = 'slip' }\n"), tmp_path / "run")
@@ -135,6 +136,7 @@ def test_a_hiccup_slips(bench, tmp_path: Path) -> None:
     assert any(note.endswith("s lost") for note in result.notes)
 
 
+@pytest.mark.slow
 def test_an_overrun_aborts(bench, tmp_path: Path) -> None:
     trial = bench('real_time = { factor = 0.05, overrun = "abort" }\n', takes=0.8, only=0.02)
     result, timing = run(trial, tmp_path / "run")
@@ -150,6 +152,7 @@ def test_an_overrun_aborts(bench, tmp_path: Path) -> None:
 FOLLOWING = '[real_time]\nfactor = "pace.speedup"\npaused = "pace.paused"\n'
 
 
+@pytest.mark.slow
 def test_the_factor_may_be_a_signal(bench, tmp_path: Path) -> None:
     result, timing = run(bench(FOLLOWING), tmp_path / "run")
     assert result.status == "complete"

@@ -74,6 +74,7 @@ def content(folder: Path) -> dict[str, bytes]:
     return {str(path.relative_to(folder)): path.read_bytes() for path in files}
 
 
+@pytest.mark.slow
 def test_what_they_leave_does_not_depend_on_how_many_run_side_by_side(cases, tmp_path):
     campaign, left = cases(NUMBERS), []
     for jobs in (1, 3):
@@ -94,6 +95,7 @@ def test_what_they_leave_does_not_depend_on_how_many_run_side_by_side(cases, tmp
     assert len(seen) == 1 + 3
 
 
+@pytest.mark.slow
 def test_one_that_dies_takes_none_with_it(cases, tmp_path):
     campaign = cases('"case.way" = ["run", "die", "run", "run"]\n')
     _, results = run_campaign(campaign, tmp_path / "out", engine="direct", jobs=2)
@@ -101,6 +103,7 @@ def test_one_that_dies_takes_none_with_it(cases, tmp_path):
     assert "7" in str(results[1][1].error)
 
 
+@pytest.mark.slow
 def test_cases_of_a_list_of_settings_come_in_its_order(cases, tmp_path):
     (trial,) = cases(NUMBERS).trials
     settings = [{"case.number": n, "case.way": "wait" if n == 5 else "run"} for n in (5, 1, 4)]
@@ -129,6 +132,7 @@ def test_cases_of_a_list_of_settings_come_in_its_order(cases, tmp_path):
         next(run_cases(unknown, lambda: tmp_path / "never", engine="direct"))
 
 
+@pytest.mark.slow
 def test_whoever_has_seen_enough_cases_closes_the_iterator(cases, tmp_path):
     (trial,) = cases(NUMBERS).trials
     ways = ["run", *["wait"] * 5]
@@ -139,6 +143,7 @@ def test_whoever_has_seen_enough_cases_closes_the_iterator(cases, tmp_path):
     assert len(list((tmp_path / "out").iterdir())) <= 2
 
 
+@pytest.mark.slow
 def test_what_programs_outside_connect_to_runs_alone(cases, tmp_path):
     campaign = cases('"case.links" = ["tcpin:127.0.0.1:1", ""]\n"case.number" = [1, 2]\n')
     trials = [case.trial for case in campaign.cases()]
@@ -147,6 +152,7 @@ def test_what_programs_outside_connect_to_runs_alone(cases, tmp_path):
         assert pool._alone == {0, 1}
 
 
+@pytest.mark.slow
 def test_of_several_mistakes_the_first_is_raised(cases, tmp_path):
     campaign = cases('"case.number" = [1, "two", "three"]\n')
     with pytest.raises(InputError, match="two"):
@@ -165,6 +171,7 @@ def started(folder: Path, *more: str) -> subprocess.Popen[str]:
     )
 
 
+@pytest.mark.slow
 def test_a_campaign_that_was_stopped_goes_on(cases, tmp_path):
     campaign = cases('"case.way" = ["run", "wait"]\n"case.number" = [1, 2, 3]\n')
     process = started(tmp_path, "--jobs", "2", "--no-report")
@@ -190,6 +197,7 @@ def test_a_campaign_that_was_stopped_goes_on(cases, tmp_path):
     assert left["campaign.json"] == content(tmp_path / "once")["campaign.json"]
 
 
+@pytest.mark.slow
 def test_an_index_costs_no_more_per_case_in_a_long_campaign(cases, tmp_path, monkeypatch):
     campaign = cases(f'"case.number" = {[*range(400)]}\n')
     sizes, ends = [], []
@@ -221,6 +229,7 @@ def test_an_index_costs_no_more_per_case_in_a_long_campaign(cases, tmp_path, mon
     assert sizes[-1] == len(ends) == 351
 
 
+@pytest.mark.slow
 def test_another_campaign_does_not_go_on(cases, tmp_path):
     run_campaign(cases(NUMBERS), tmp_path / "out", engine="direct", jobs=2)
     before = content(tmp_path / "out")
@@ -232,6 +241,7 @@ def test_another_campaign_does_not_go_on(cases, tmp_path):
     assert len(json.loads(before["campaign.json"])["cases"]) == 5
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(sys.platform != "linux", reason="/proc")
 def test_when_it_is_killed_no_process_of_its_own_stays(cases, tmp_path):
     cases('"case.way" = ["wait"]\n"case.number" = [1, 2, 3]\n')

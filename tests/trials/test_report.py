@@ -172,6 +172,7 @@ def test_a_rig_without_a_craft(write_run):
     assert "deck" not in page.text
 
 
+@pytest.mark.slow
 def test_a_model_with_thousands_of_signals_and_parameters_has_a_page_that_opens(write_run):
     parameters = {
         f"gain[{k}]": {"value": 1.0, "unit": "1", "from": "", "source": "", "mark": ""}

@@ -99,6 +99,7 @@ def agree(seed: int) -> tuple[int, int]:
     return rows, int(decided.sum())
 
 
+@pytest.mark.slow
 def test_margins_are_those_of_rtamt():
     rows, decided = np.sum([agree(seed) for seed in range(CHEAP)], axis=0)
     assert decided > 0.5 * rows  # else the comparison is about nothing

@@ -367,6 +367,7 @@ def test_a_folder_with_something_in_it_is_never_written_to(bench, tmp_path: Path
     assert [p.name for p in (tmp_path / "run").iterdir()] == ["precious"]
 
 
+@pytest.mark.slow
 def test_a_design_is_drawn_for_every_combination(bench, write, tmp_path: Path) -> None:
     bench()
     path = write(
@@ -398,6 +399,7 @@ def test_a_key_is_drawn_or_in_the_grid(bench, write, tmp_path: Path) -> None:
         run_campaign(load_campaign(str(path)), tmp_path / "out", engine="direct")
 
 
+@pytest.mark.slow
 def test_a_campaign_runs_every_combination_and_each_scaling(bench, write, tmp_path: Path) -> None:
     bench()
     path = write(

@@ -58,6 +58,7 @@ def campaign(write: Write, directions: list[int]) -> Path:
     return write("polar.toml", text)
 
 
+@pytest.mark.slow
 def test_campaign_over_the_wind_has_a_polar_diagram(write: Write, tmp_path: Path) -> None:
     folder = tmp_path / "out"
     directions = [0, 30, 60, 90, 110]
@@ -76,6 +77,7 @@ def test_campaign_over_the_wind_has_a_polar_diagram(write: Write, tmp_path: Path
     np.testing.assert_allclose(found, sorted(expected), atol=1e-6)
 
 
+@pytest.mark.slow
 def test_few_directions_are_no_polar_diagram(write: Write, tmp_path: Path) -> None:
     run_campaign(load_campaign(str(campaign(write, [0, 60]))), tmp_path / "out", engine="direct")
     assert "Polar diagram" not in write_campaign_report(tmp_path / "out").read_text("utf-8")

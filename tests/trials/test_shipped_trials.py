@@ -77,6 +77,7 @@ def begun(name: str, engine: str, folder: Path) -> list[bytes]:
     return (result.folder / "signals.csv").read_bytes().splitlines()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", one_per_rig(TRIALS))
 def test_fmus_and_components_in_process_leave_the_same_bytes(name: str, tmp_path: Path) -> None:
     rows = begun(name, "fmu", tmp_path / "fmu")
@@ -91,6 +92,7 @@ def test_whole_trials_as_fmus(name: str, tmp_path: Path) -> None:
     assert result.status == "complete", result.error
 
 
+@pytest.mark.slow
 @needs_kits("mavlink")
 @pytest.mark.parametrize("name", one_per_rig(PACED))
 def test_with_nobody_connected_they_leave_the_same_bytes_too(name: str, tmp_path: Path) -> None:

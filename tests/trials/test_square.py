@@ -44,6 +44,7 @@ def sea(tmp_path: Path) -> Path:
     return tmp_path
 
 
+@pytest.mark.slow
 def test_a_firmware_is_sent_round_and_its_true_track_decides(sea: Path) -> None:
     port = free_port(socket.SOCK_STREAM)
     done = seatrial(
@@ -65,6 +66,7 @@ def test_a_firmware_is_sent_round_and_its_true_track_decides(sea: Path) -> None:
     assert float(last["time"]) < 90.0  # it ends with the last waypoint
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("stiffness", "home"), [("220 N/m", (0.0, 0.2)), ("0 N/m", (1.5, 4.0))])
 def test_in_a_current_its_mission_does_not_drift(
     stiffness: str, home: tuple[float, float], sea: Path
@@ -91,6 +93,7 @@ def test_in_a_current_its_mission_does_not_drift(
     assert "mark 2 (8 m north, 6 m east)" in page
 
 
+@pytest.mark.slow
 def test_a_firmware_that_says_nothing_ends_the_run(sea: Path) -> None:
     peer = ROOT / "tests" / "kits" / "ardupilot" / "peer.py"
     (sea / "ardurover").write_text(f'#!/bin/sh\nexec {sys.executable} {peer} "$@"\n')

@@ -150,6 +150,7 @@ DEATHS = {
 }
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("engine", ["direct", pytest.param("fmu", marks=pytest.mark.interop)])
 @pytest.mark.parametrize("how", DEATHS)
 def test_a_death_in_a_step_is_a_failed_run(how: str, engine: str, trial, tmp_path: Path) -> None:
@@ -220,6 +221,7 @@ LAST_CALLS = {
 }
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("version", [2, 3])
 @pytest.mark.parametrize("isolated", [False, True])
 @pytest.mark.parametrize("how", LAST_CALLS)
@@ -277,6 +279,7 @@ def test_the_caller_of_the_api_lives(trial, tmp_path: Path) -> None:
     assert len(api.load_result(tmp_path / "run").signals["boat.steps"]) == 4
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("where", ["step", "start"])
 def test_a_case_that_dies_does_not_end_its_campaign(where: str, trial, write, tmp_path) -> None:
     trial("fine", where)
@@ -293,6 +296,7 @@ def test_a_case_that_dies_does_not_end_its_campaign(where: str, trial, write, tm
     assert "3 of 4 cases pass" in done.stdout
 
 
+@pytest.mark.slow
 def test_a_failed_run_stays_one_if_its_report_cannot_be_made(trial, write, tmp_path: Path) -> None:
     trial("spoil")
     done = seatrial("run", "trial.toml", "--out", "run", "--engine", "direct", cwd=tmp_path)
@@ -305,6 +309,7 @@ def test_a_failed_run_stays_one_if_its_report_cannot_be_made(trial, write, tmp_p
     assert "1 of 2 cases pass" in done.stdout
 
 
+@pytest.mark.slow
 @needs_kits("interchange")
 def test_a_component_of_a_package_can_be_isolated(native_fmu, tmp_path: Path) -> None:
     with zipfile.ZipFile(tmp_path / "boat.ssp", "w") as package:
@@ -332,6 +337,7 @@ def test_a_component_that_leaves_the_folder_moves_nothing(trial, tmp_path: Path)
     assert times(tmp_path / "run")[-1] == "1.0"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("isolated", ["false", pytest.param("true", marks=pytest.mark.interop)])
 def test_a_component_that_forks_is_there_once(isolated: str, trial, write, tmp_path: Path) -> None:
     trial("fork")
@@ -349,6 +355,7 @@ def test_what_is_printed_and_logged_reaches_the_caller(trial, caplog, capsys, tm
     assert capsys.readouterr().out.count("from Python\n") == 8 - 1
 
 
+@pytest.mark.slow
 def test_results_and_errors_are_those_of_a_run_in_this_process(trial, tmp_path: Path) -> None:
     loaded = load_trial(trial("fine"))
     shown: list[tuple[float, float]] = []
@@ -365,6 +372,7 @@ def test_results_and_errors_are_those_of_a_run_in_this_process(trial, tmp_path: 
         run_supervised(loaded, tmp_path / "run", engine="direct")
 
 
+@pytest.mark.slow
 def test_nothing_is_left_of_the_processes(trial, tmp_path: Path) -> None:
     loaded = load_trial(trial("segfault"))
     before = len(os.listdir("/proc/self/fd"))

@@ -57,6 +57,7 @@ def of_group(found, group):
     }
 
 
+@pytest.mark.slow
 def test_all_components_meet_the_same_sea(trial, tmp_path):
     text = SEA + '[current]\nspeed = "1 kn"\n[wind]\nspeed = "10 m/s"\nspectrum = "norsok"\n'
     found = parameters(trial(text), tmp_path)
@@ -74,6 +75,7 @@ def test_all_components_meet_the_same_sea(trial, tmp_path):
     assert found["boat"]["sea_spectrum"] == "jonswap"
 
 
+@pytest.mark.slow
 def test_the_command_line_changes_one_key_of_the_file(trial, tmp_path):
     found = parameters(trial(SEA, **{"sea.height": "1 m", "wind.speed": 5}), tmp_path)
     assert found["rov"]["sea_height"] == 1.0
@@ -81,6 +83,7 @@ def test_the_command_line_changes_one_key_of_the_file(trial, tmp_path):
     assert found["ship"]["wind_speed"] == 5.0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("degree", "height"), [(1, 0.05), (3, 0.875), (9, 14.0)])
 def test_a_degree_of_the_sea_is_a_fully_developed_one(trial, tmp_path, degree, height):
     found = parameters(trial(f"sea = {{ douglas = {degree} }}\n"), tmp_path)["ship"]
@@ -146,6 +149,7 @@ def test_the_wind_of_a_trial_takes_the_place_of_the_components_own(trial, tmp_pa
     np.testing.assert_allclose(east, 8 * 0.5**0.12)
 
 
+@pytest.mark.slow
 def test_the_report_shows_what_was_met_and_nothing_in_calm(trial, tmp_path):
     calm = run_trial(trial(), out=tmp_path / "calm", engine="direct")
     assert list(sea_figures(load_run(calm.folder))) == []
@@ -167,6 +171,7 @@ def test_the_report_shows_what_was_met_and_nothing_in_calm(trial, tmp_path):
     )
 
 
+@pytest.mark.slow
 def test_a_package_for_other_tools_has_the_same_sea(trial, tmp_path):
     trial(SEA + "current = { speed = 0.5 }\n")
     path = tmp_path / "trial.toml"
@@ -202,6 +207,7 @@ def test_what_a_current_does_not_reach_is_noted(trial, tmp_path):
     assert noted(SEA) == []
 
 
+@pytest.mark.slow
 def test_swells_are_a_list(trial, tmp_path):
     swell = 'swell = [{ height = "40 cm", period = "12 s", direction = "90 deg" }]'
     loaded = trial(SEA.replace(" }", f", {swell} }}"))
@@ -215,6 +221,7 @@ def test_swells_are_a_list(trial, tmp_path):
     )  # of both: sqrt(0.5^2 + 0.4^2)
 
 
+@pytest.mark.slow
 def test_a_swell_may_be_alone(trial, tmp_path):
     loaded = trial('[[sea.swell]]\nheight = "1 m"\nperiod = "12 s"\n')
     ship = parameters(loaded, tmp_path)["ship"]

@@ -113,6 +113,7 @@ def mavlink_times(folder: Path) -> list[datetime.datetime]:
     return [each.replace(tzinfo=None) for each in found]
 
 
+@pytest.mark.slow
 def test_every_link_sends_the_trials_date_and_time(write, tmp_path, rig):
     """The start of the run is that instant, also where simulated time begins at 1 s."""
     text = f'utc = "{NEW_YEAR}"\n{TRIAL}'
@@ -129,6 +130,7 @@ def test_every_link_sends_the_trials_date_and_time(write, tmp_path, rig):
         assert list(fmus[port]) == list(load_run(folder).signals[port]), port
 
 
+@pytest.mark.slow
 def test_without_it_links_have_their_own_dates(write, tmp_path, rig):
     own = '[set]\n"fix.date" = "2024-02-29"\n'
     folder = ran(write, tmp_path / "run", TRIAL + own, rig)

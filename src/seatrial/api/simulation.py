@@ -84,21 +84,14 @@ class Simulation:
         choices: Mapping[str, str] | None = None,
     ) -> None:
         from ..links.hardware import confined
-        from ..system.assembly import assemble
-        from ..system.isolation import KEY_END, isolated_in, isolating
 
         self._observers: list[Callable[[Simulation], object]] = []
         self._error = ""
-        settings = as_settings(set)
-        isolated = isolated_in(settings, "set")
-        loaded = isolating(_loaded_rig(str(rig), as_duration(step), choices), isolated, "set")
-        chosen = as_engine(engine)
         with confined():
-            system = assemble(loaded, chosen, variant=variant, seed=int(seed))
+            system = assembled(
+                rig, set, seed=seed, variant=variant, engine=engine, step=step, choices=choices
+            )
             try:
-                for key, written in settings.items():
-                    if not key.endswith(KEY_END):
-                        system.set(key, written, "set")
                 self._master = _started(system)
             except BaseException:
                 system.discard()
@@ -157,17 +150,17 @@ class Simulation:
     @cached_property
     def signals(self) -> dict[str, Signal]:
         """All outputs by name, in the order of the rig: what a record holds."""
-        return self._described("output")
+        return described(self._master.system, "output")
 
     @cached_property
     def inputs(self) -> dict[str, Signal]:
         """All inputs by name."""
-        return self._described("input")
+        return described(self._master.system, "input")
 
     @cached_property
     def parameters(self) -> dict[str, Signal]:
         """All parameters by name."""
-        return self._described("parameter")
+        return described(self._master.system, "parameter")
 
     def get(self, name: str) -> Any:
         """Return the present value of an output, an input or a parameter, in its own unit.
@@ -373,16 +366,17 @@ class Simulation:
             raise InputError(f"record: {pattern} is no output; outputs alone are recorded")
         return names
 
-    def _described(self, causality: str) -> dict[str, Signal]:
-        system = self._master.system
-        described = {}
-        for component, part in system.parts.items():
-            feeders = system.feeders(component)
-            for variable in part.instance.variables.values():
-                if variable.causality == causality:
-                    name, feeder = f"{component}.{variable.name}", feeders.get(variable.name, "")
-                    described[name] = _signal(name, variable, feeder)
-        return described
+
+def described(system: System, causality: str) -> dict[str, Signal]:
+    """Return the variables of a causality, by name, in the order of the rig."""
+    found = {}
+    for component, part in system.parts.items():
+        feeders = system.feeders(component)
+        for variable in part.instance.variables.values():
+            if variable.causality == causality:
+                name, feeder = f"{component}.{variable.name}", feeders.get(variable.name, "")
+                found[name] = _signal(name, variable, feeder)
+    return found
 
 
 def _signal(name: str, variable: Variable, feeder: str) -> Signal:
@@ -397,6 +391,41 @@ def _signal(name: str, variable: Variable, feeder: str) -> Signal:
         tunable=settable and variable.causality != "output" and not feeder,
         feeder=feeder,
     )
+
+
+def assembled(
+    rig: str | Path,
+    settings: Mapping[str, Any] | None = None,
+    *,
+    seed: int = 1,
+    variant: str | None = None,
+    engine: str = "direct",
+    step: float | str | None = None,
+    choices: Mapping[str, str] | None = None,
+) -> System:
+    """Return the system of a rig with its parameters, as `Simulation` takes them, not started.
+
+    Raises InputError for bad input.
+    """
+    from ..system.assembly import assemble
+    from ..system.isolation import KEY_END, isolated_in, isolating
+
+    given = as_settings(settings)
+    loaded = _loaded_rig(str(rig), as_duration(step), choices)
+    system = assemble(
+        isolating(loaded, isolated_in(given, "set"), "set"),
+        as_engine(engine),
+        variant=variant,
+        seed=int(seed),
+    )
+    try:
+        for key, written in given.items():
+            if not key.endswith(KEY_END):
+                system.set(key, written, "set")
+    except BaseException:
+        system.discard()
+        raise
+    return system
 
 
 def _loaded_rig(name: str, step: Any, choices: Mapping[str, str] | None) -> Rig:

@@ -95,7 +95,7 @@ def from_entry(
             resolved = _text(variable, value, origin)
         else:
             resolved = _scalar(variable, value, origin)
-        _check_limits(variable, resolved, origin)
+        check_limits(variable, resolved, origin)
         given[variable.name] = Given(resolved, origin, entry.source, entry.mark, expression)
     return given
 
@@ -129,7 +129,7 @@ def from_written(
             given.update(from_entry(value, [variable], origin))
             continue
         resolved = _scalar(variable, value, origin)
-        _check_limits(variable, resolved, origin)
+        check_limits(variable, resolved, origin)
         given[variable.name] = Given(resolved, origin)
     return given
 
@@ -204,7 +204,7 @@ def _converted(value: float, unit: str | Unit, variable: Variable, origin: str) 
     return value if (factor, offset) == (1.0, 0.0) else value * factor + offset
 
 
-def _check_limits(variable: Variable, value: Value, origin: str) -> None:
+def check_limits(variable: Variable, value: Value, origin: str) -> None:
     """Raise InputError for a parameter outside what its FMU allows."""
     low, high = variable.minimum, variable.maximum
     if variable.causality not in ("parameter", "structuralParameter") or not isinstance(

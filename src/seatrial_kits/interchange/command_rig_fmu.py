@@ -17,7 +17,7 @@ from seatrial.system.unread import leave_out_unread
 from seatrial.trial.files.rig_changes import changed_rig, set_values
 from seatrial_kits.native.engine import carry_natively
 
-from .rig_fmu.native import build_native_rig, why_not_native
+from .rig_fmu.native import build_native_rig, in_weather, why_not_native
 from .rig_fmu.python import build_python_rig
 
 
@@ -53,7 +53,7 @@ class RigBuild:
         """Build the FMU in C; return why not if that cannot be."""
         system = self._assembled("native")
         try:
-            whys = why_not_native(system, carry_natively(system))
+            whys = why_not_native(system, carry_natively(system)) + in_weather(system)
             if not whys:
                 build_native_rig(system, path, platforms, version=self.version)
                 print_notes(system.notes)

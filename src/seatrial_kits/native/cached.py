@@ -25,12 +25,15 @@ from .tables import is_built_in
 from .translation.constants import fingerprint
 
 
-def native_fmu(source: ComponentSource, values: Mapping[str, Any] | None = None) -> Path:
+def native_fmu(
+    source: ComponentSource, values: Mapping[str, Any] | None = None, *, surrounded: bool = False
+) -> Path:
     """Return the native FMU of ``source`` for this machine, built if it is not there yet.
 
-    ``values`` (by scalar, SI) are parameters as a rig gives them. Texts, waves, current, wind and
-    what is ``structural`` are built in; other numbers are to be set before the run as ever: one
-    FMU serves all of them. The machine's own C compiler builds it (``cc``), else Zig's.
+    ``values`` (by scalar, SI) are parameters as a rig gives them. Texts and what is
+    ``structural`` are built in, and waves, current and wind, if it is no plant that is
+    ``surrounded`` by them; other numbers are to be set before the run as ever: one FMU serves all
+    of them. The machine's own C compiler builds it (``cc``), else Zig's.
 
     Raises InputError, with the reason, for a component that has no C, values that it cannot
     start with or that cannot be built in, and without a compiler.
@@ -40,8 +43,12 @@ def native_fmu(source: ComponentSource, values: Mapping[str, Any] | None = None)
     cls = source.component_class()
     given = values or {}
     scalars = cls.scalar_by_name
-    own = {n: v for n, v in given.items() if n in scalars and is_built_in(cls, scalars[n].port)}
-    text = f"{_tool_tag()} {fingerprint(cls)} {sorted(own.items())!r}"
+    own = {
+        name: value
+        for name, value in given.items()
+        if name in scalars and is_built_in(cls, scalars[name].port, surrounded=surrounded)
+    }
+    text = f"{_tool_tag()} {fingerprint(cls)} {sorted(own.items())!r} {surrounded}"
     tag = hashlib.sha256(text.encode()).hexdigest()[:12]
     path = cache_folder("native") / f"{bundle_name(source)}-{tag}.fmu"
     refused = path.with_suffix(".refused")
@@ -53,7 +60,9 @@ def native_fmu(source: ComponentSource, values: Mapping[str, Any] | None = None)
             component.set(name, value)
         checked(component, source.origin)
         try:
-            build_native_fmu(source, path, (HERE,), own, library_here, given=given)
+            build_native_fmu(
+                source, path, (HERE,), own, library_here, given=given, surrounded=surrounded
+            )
         except DifferenceError as error:
             write_named(refused, str(error).encode())
             raise

@@ -30,6 +30,9 @@ typedef struct {
 #endif
 #include MODEL_H
 
+/* What surrounds a craft at a time, s, by its states; returns 0 where there is no value. */
+typedef int (*Surroundings)(double t, const double *state, double *around);
+
 typedef enum { INSTANTIATED, INITIALISING, RUNNING, TERMINATED } Phase;
 
 typedef struct {
@@ -53,6 +56,7 @@ typedef struct {
     char error[ERROR_SIZE]; /* of the call that runs; empty: none */
     char shown[8][32];      /* numbers for a message */
     int shown_count;
+    Surroundings met; /* of a plant in waves, current or wind, from its host */
 } Instance;
 
 /* What a component does: these are in plant.c, or written from its Python. */

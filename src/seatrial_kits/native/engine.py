@@ -12,14 +12,15 @@ from seatrial.system.system import System
 
 
 def carry_natively(
-    system: System, progress: Callable[[str], None] = lambda _: None
+    system: System, progress: Callable[[str], None] = lambda _: None, *, weather: bool = False
 ) -> dict[str, list[str]]:
     """Let native FMUs carry the components of a system whose engine is "native".
 
-    To be called when all parameters are given: texts among them, and waves, current and wind, are
-    built in. They come from the user's cache, and are built if they are not there. What has no C
-    stays in process; there it is noted why, and returned, components by reason. Raises InputError
-    without a compiler.
+    To be called when all parameters are given: texts among them are built in, and waves, current
+    and wind around a plant are those of its parameters then. FMUs come from the user's cache, and
+    are built if they are not there. What has no C stays in process; there it is noted why, and
+    returned, components by reason. With ``weather`` plants are ready for waves, current and wind
+    that are not there yet. Raises InputError without a compiler.
     """
     if system.engine != "native":
         return {}
@@ -27,7 +28,7 @@ def carry_natively(
     for part in system.parts.values():
         if isinstance(part.instance, DirectInstance):
             progress(f"{part.name} ({part.fmu}, in C)")
-            why = _carry(system, part)
+            why = _carry(system, part, weather)
             if why:
                 stay.setdefault(why, []).append(part.name)
     system.notes += [f"in Python: {', '.join(names)}: {why}" for why, names in stay.items()]
@@ -51,21 +52,26 @@ def in_python(system: System) -> dict[str, list[str]]:
     return found
 
 
-def _carry(system: System, part: Part) -> str:
+def _carry(system: System, part: Part, weather: bool) -> str:
     """Let a native FMU carry a component; return why if there is none."""
     from seatrial.fmi.compiler import require_compiler
     from seatrial.fmi.loading.load import load_fmu, open_instance
 
     from .cached import native_fmu
+    from .surroundings import is_surrounded, surround, surroundings_of
 
     source = find_source(part.fmu, system.rig.components[part.name].scope.folder)
     assert isinstance(source, ComponentSource)
     require_compiler()
     values = {name: given.value for name, given in part.given.items()}
     try:
-        fmu = load_fmu(native_fmu(source, values))
+        around = surroundings_of(source, values)
+        surrounded = around is not None or (weather and is_surrounded(source))
+        fmu = load_fmu(native_fmu(source, values, surrounded=surrounded))
     except InputError as error:
         return str(error)
     part.instance.free()
     part.instance, part.sha256 = open_instance(fmu, part.name), fmu.sha256
+    if around:
+        surround(part.instance, around)
     return ""

@@ -10,10 +10,12 @@ from seatrial.errors import InputError, SimulationError
 from seatrial.model.component import Component
 from seatrial.model.plant import Plant
 from seatrial.model.ports import Port
+from seatrial.physics.craft.surrounded import SurroundedPlant
 
 from .tables import table, tables
 
 _HEADER = """\
+#define AROUND {around}
 enum {{
     STATES = {x}, INPUTS = {u}, PARAMETERS = {p}, OUTPUTS = {y}, MAX_STEP = {max_step}
 }};
@@ -21,37 +23,33 @@ extern const int model_x[], model_x_start[], model_u[], model_p[], model_y[];
 
 typedef struct {{
     double x[STATES + 1];
+#if AROUND
+    double around[AROUND];     /* at the end of the last step */
+    double before[STATES + 1]; /* the states before that step */
+    double met[4][AROUND];     /* evaluations of what surrounds the plant */
+    double span;               /* the step, s, */
+    long long count;           /* its sub-steps, */
+    long long steps, done;     /* steps between the last two evaluations, and those taken */
+    int among;                 /* whether anything surrounds it in this run */
+#endif
 }} Memory;
 
-void model_rk4(const double *x, const double *u, const double *p, double h, double *next);
-void model_out(const double *x, const double *u, const double *p, double *y);
-void model_along(const double *x, const double *u, const double *p, const double *dx,
-                 const double *du, const double *dp, double *dy);
+{functions}
 """
 
-_CALLS = """
-void model_rk4(const double *x, const double *u, const double *p, double h, double *next) {{
-    const double *arguments[{rk4_arg}] = {{x, u, p, &h}};
-    double *results[{rk4_res}] = {{next}}, work[{rk4_w}];
-    casadi_int places[{rk4_iw}];
-    rk4(arguments, results, places, work, 0);
-}}
-
-void model_out(const double *x, const double *u, const double *p, double *y) {{
-    const double *arguments[{out_arg}] = {{x, u, p}};
-    double *results[{out_res}] = {{y}}, work[{out_w}];
-    casadi_int places[{out_iw}];
-    out(arguments, results, places, work, 0);
-}}
-
-void model_along(const double *x, const double *u, const double *p, const double *dx,
-                 const double *du, const double *dp, double *dy) {{
-    const double *arguments[{along_arg}] = {{x, u, p, dx, du, dp}};
-    double *results[{along_res}] = {{dy}}, work[{along_w}];
-    casadi_int places[{along_iw}];
-    along(arguments, results, places, work, 0);
-}}
-"""
+_STILL = {
+    "rk4": ("x", "u", "p", "h"),
+    "out": ("x", "u", "p"),
+    "along": ("x", "u", "p", "dx", "du", "dp"),
+}
+"""Functions of a plant by their arguments; all but the time step are arrays."""
+_AMONG = {
+    "rates": ("x", "u", "p"),
+    "between": ("x", "u0", "u", "u1", "p", "h"),
+    "out_among": _STILL["out"],
+    "along_among": _STILL["along"],
+}
+"""Those of a plant among waves, current and wind beside them."""
 
 _OWN = ("step", "outputs", "_load", "_publish", "compiled", "advance", "refresh")
 """Methods that `plant.c` has in C: who overrides one is another component."""
@@ -63,8 +61,7 @@ def why_python(plant: type[Plant]) -> str:
         return "it has inputs of text"
     for name in _OWN:
         owner = next(each for each in plant.__mro__ if name in vars(each))
-        # With nothing around them they run on the equations of `Plant`: `require_start` sees to it.
-        if owner not in (Plant, Component) and owner.__name__ != "SurroundedPlant":
+        if owner not in (Plant, Component, SurroundedPlant):
             return f"{owner.__name__}.{name} is more than equations"
     return ""
 
@@ -86,34 +83,36 @@ def require_start(plant: Plant, name: str) -> None:
         p.role == "file" and getattr(plant, p.name) for p in plant.ports.values()
     ):
         raise InputError(f"{name}: parameters from a file cannot be built into a native FMU")
-    if getattr(plant, "_around", None) is not None:
-        raise InputError(
-            f"{name}: a native FMU is built in still water and air, found waves, a current or "
-            "wind among its parameters"
-        )
 
 
-def header(plant: Plant) -> str:
-    """Return what ``model.h`` has of a plant."""
+def header(plant: Plant, surrounded: bool) -> str:
+    """Return what ``model.h`` has of a plant; `model` says what ``surrounded`` is."""
     return _HEADER.format(
+        around=_size(plant.surrounding_ports) if surrounded else 0,  # type: ignore[attr-defined]
         x=_size(plant.state_ports),
         u=_size(plant.input_ports),
         p=_size(plant.parameter_ports),
         y=_size(plant.output_ports),
         max_step=plant.ports["max_step"].offset,
+        functions="\n".join(f"{_declared(*each)};" for each in _functions(surrounded).items()),
     )
 
 
-def model(plant: Plant) -> str:
-    """Return ``model.c``: the equations with the text parameters' values, and the tables."""
-    compiled = plant.compiled()
+def model(plant: Plant, surrounded: bool) -> str:
+    """Return ``model.c``: the equations with the text parameters' values, and the tables.
+
+    One that is ``surrounded`` has its equations among waves, current and wind beside those without.
+    """
+    still = plant.compiled()
+    compiled = {"rk4": still.rk4, "out": still.out, "along": _along(still.out)}
+    if surrounded:
+        assert isinstance(plant, SurroundedPlant)
+        among, between = plant.surrounded()
+        compiled |= {"rates": still.rhs, "between": between}
+        compiled |= {"out_among": among.out, "along_among": _along(among.out)}
     generator = ca.CodeGenerator("model.c", {"with_header": False, "main": False})
-    sizes = {}
-    for function in (compiled.rk4, compiled.out, _along(compiled.out)):
-        generator.add(function)
-        for what in ("arg", "res", "iw", "w"):
-            size = getattr(function, f"sz_{what}")()
-            sizes[f"{function.name()}_{what}"] = max(1, size)
+    for name, function in compiled.items():
+        generator.add(_named(function, f"casadi_{name}"))
     starts = [plant.ports[f"{p.name}_start"] for p in plant.state_ports]
     own = [
         table("int", "x", _references(plant.state_ports)),
@@ -122,9 +121,39 @@ def model(plant: Plant) -> str:
         table("int", "p", _references(plant.parameter_ports)),
         table("int", "y", _references(plant.output_ports)),
     ]
-    common = tables(plant)
-    text = f'{generator.dump()}\n#include "component.h"'
-    return "\n".join([text, _CALLS.format(**sizes), *own, common])
+    text = f'{generator.dump()}\n#include "component.h"\n'
+    calls = [_called(name, of, compiled[name]) for name, of in _functions(surrounded).items()]
+    return "\n".join([text, *calls, *own, tables(plant, surrounded=surrounded)])
+
+
+def _functions(surrounded: bool) -> dict[str, tuple[str, ...]]:
+    return _STILL | _AMONG if surrounded else _STILL
+
+
+def _named(function: ca.Function, name: str) -> ca.Function:
+    """Return a function under a name of its own: of two models each has its outputs."""
+    symbols = function.sx_in()
+    return ca.Function(name, symbols, function.call(symbols))
+
+
+def _declared(name: str, arguments: Sequence[str]) -> str:
+    """Return the head of a function of C."""
+    taken = ", ".join("double h" if a == "h" else f"const double *{a}" for a in arguments)
+    return f"void model_{name}({taken}, double *to)"
+
+
+def _called(name: str, arguments: Sequence[str], function: ca.Function) -> str:
+    """Return a function of C that calls CasADi's."""
+    sizes = {of: max(1, getattr(function, f"sz_{of}")()) for of in ("arg", "res", "iw", "w")}
+    given = ", ".join("&h" if a == "h" else a for a in arguments)
+    return f"""\
+{_declared(name, arguments)} {{
+    const double *arguments[{sizes["arg"]}] = {{{given}}};
+    double *results[{sizes["res"]}] = {{to}}, work[{sizes["w"]}];
+    casadi_int places[{sizes["iw"]}];
+    casadi_{name}(arguments, results, places, work, 0);
+}}
+"""
 
 
 def _along(out: ca.Function) -> ca.Function:

@@ -13,6 +13,7 @@ from xml.etree.ElementTree import Element, SubElement, tostring
 import fmpy
 
 from seatrial import __version__
+from seatrial.errors import InputError
 from seatrial.fmi.building.packing import described_files, zipped
 from seatrial.fmi.cache import write_named
 from seatrial.fmi.compiler import HERE, SEMANTICS, TARGETS, TUPLES, library
@@ -44,11 +45,15 @@ def build_native_fmu(
     compiled: Callable[[Mapping[str, bytes], str], bytes] = library,
     version: int = 2,
     given: Mapping[str, Any] | None = None,
+    *,
+    surrounded: bool = False,
 ) -> Path:
     """Build the native FMU of ``source`` at ``destination`` (a file) and return its path.
 
     ``start_values`` (by port name, SI) are baked in; text parameters, waves, current and wind
-    cannot change afterwards. ``version`` of FMI is 2 or 3. The same input gives the same bytes.
+    cannot change afterwards. ``surrounded`` says that the FMU will meet weather, which its host
+    evaluates (`surroundings.surround`): its numbers may change before each run then. ``version``
+    of FMI is 2 or 3. The same input gives the same bytes.
     Where its binary runs on this machine, it has done the same as the Python (`selfcheck`), also
     with the values ``given`` before a run (by scalar).
     Raises InputError for a component that has no C, naming the line, values it cannot start
@@ -57,7 +62,7 @@ def build_native_fmu(
     cls = source.component_class()
     refuse(source)
     made = partial(_made, source, start_values or {})
-    sources, own = _sources(made, given or {}, source.origin)
+    sources, own = _sources(made, given or {}, source.origin, surrounded)
     example = cls(source.name)
     if version == 3:
         sources |= front_sources(example)
@@ -77,7 +82,7 @@ def build_native_fmu(
         with TemporaryDirectory() as folder:
             built = Path(folder, destination.name)
             built.write_bytes(content)
-            refuse_difference(source, built, start_values or {}, given or {})
+            refuse_difference(source, built, start_values or {}, given or {}, surrounded)
     destination.parent.mkdir(parents=True, exist_ok=True)
     write_named(destination, content)
     return destination
@@ -91,7 +96,7 @@ def _made(source: ComponentSource, values: Mapping[str, Any]) -> Component:
 
 
 def _sources(
-    made: Callable[[], Component], given: Mapping[str, Any], name: str
+    made: Callable[[], Component], given: Mapping[str, Any], name: str, surrounded: bool
 ) -> tuple[dict[str, bytes], str]:
     """Return the sources by file name, but for ``model.h``, and what that has of its own.
 
@@ -105,7 +110,13 @@ def _sources(
             run.set(scalar, value)
         assert isinstance(run, Plant)
         require_start(run, name)
-        text, own, parts = model(component), plant_header(component), ["plant.c"]
+        if getattr(run, "_met", None) is not None and not surrounded:
+            raise InputError(
+                f"{name}: a native FMU is built in still water and air, found waves, a current or "
+                "wind among its parameters"
+            )
+        text, own = model(component, surrounded), plant_header(component, surrounded)
+        parts = ["plant.c"]
     else:
         translation = Translation(component)
         checked(made(), name)

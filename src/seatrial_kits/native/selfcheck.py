@@ -18,6 +18,7 @@ from seatrial.model.component import Component
 from seatrial.model.faults.catalogue import FAILURES
 from seatrial.model.ports import ScalarPort
 
+from .surroundings import surround, surroundings_of
 from .tables import is_built_in, words_of
 
 _STEPS = 120
@@ -32,7 +33,11 @@ class DifferenceError(InputError):
 
 
 def refuse_difference(
-    source: ComponentSource, fmu: Path, built_in: Mapping[str, Any], values: Mapping[str, Any]
+    source: ComponentSource,
+    fmu: Path,
+    built_in: Mapping[str, Any],
+    values: Mapping[str, Any],
+    surrounded: bool,
 ) -> None:
     """Raise DifferenceError, with both values, where a native FMU and its Python differ.
 
@@ -46,7 +51,10 @@ def refuse_difference(
         python = source.component_class()(source.name)
         for port, value in built_in.items():
             python.set(port, value)
-        found = _Pair(python, fmu, start, random.Random(seed), spread).difference()
+        pair = _Pair(python, fmu, start, random.Random(seed), spread)
+        if surrounded and (around := surroundings_of(source, {**built_in, **start})):
+            surround(pair.both[1], around)
+        found = pair.difference()
         if found:
             raise DifferenceError(
                 f"{source.origin} cannot be native: {found}. That is a fault of seatrial, not of "

@@ -32,16 +32,21 @@ extern const char *const model_type_names[];
 _TYPES = {float: "REAL", int: "INTEGER", bool: "BOOLEAN", str: "STRING"}
 
 
-BUILT_IN_ROLES = ("sea", "current", "wind", "file", "run-folder")
+WEATHER_ROLES = ("sea", "current", "wind")
+BUILT_IN_ROLES = (*WEATHER_ROLES, "file", "run-folder")
 """Roles of parameters whose values are built in."""
 
 
-def is_built_in(cls: type[Component], port: Port) -> bool:
-    """Return whether a native FMU has a value of this port built in."""
+def is_built_in(cls: type[Component], port: Port, *, surrounded: bool = False) -> bool:
+    """Return whether a native FMU has a value of this port built in.
+
+    A plant that is ``surrounded`` by weather takes its numbers at the start of each run.
+    """
     if not isinstance(port, Parameter):
         return False
     # A plant's equations know nothing of what has a role: seas, currents, winds.
     by_role = bool(port.role) if issubclass(cls, Plant) else port.role in BUILT_IN_ROLES
+    by_role = by_role and not (surrounded and port.role in WEATHER_ROLES)
     return port.type is str or by_role or port.name in cls.structural
 
 
@@ -63,8 +68,11 @@ def header(component: Component, guid: str, own: str) -> str:
     )
 
 
-def tables(component: Component) -> str:
-    """Return the tables of C of a component's variables, with its values as starts."""
+def tables(component: Component, *, surrounded: bool = False) -> str:
+    """Return the tables of C of a component's variables, with its values as starts.
+
+    `is_built_in` says what ``surrounded`` is.
+    """
     scalars, values = component.scalars, component.values
     texts = [s.port.type is str for s in scalars]
     lows, highs = ([_limit(s, which) for s in scalars] for which in ("min", "max"))
@@ -85,7 +93,7 @@ def tables(component: Component) -> str:
             table("double", "starts", numbers),
             table("double", "lows", lows),
             table("double", "highs", highs),
-            table("int", "kinds", [_kind(component, s) for s in scalars]),
+            table("int", "kinds", [_kind(component, s, surrounded) for s in scalars]),
             table("int", "types", [_TYPES[s.port.type] for s in scalars]),
             table("int", "checked", _checked(component)),
             table("int", "text_inputs", _text_inputs(component)),
@@ -104,11 +112,11 @@ def table(kind: str, name: str, cells: Sequence[str]) -> str:
     return f"const {kind} model_{name}[] = {{\n    {rows}\n}};"
 
 
-def _kind(component: Component, scalar: ScalarPort) -> str:
+def _kind(component: Component, scalar: ScalarPort, surrounded: bool) -> str:
     port = scalar.port
     if not isinstance(port, Parameter):
         return port.kind.upper()
-    if is_built_in(type(component), port):
+    if is_built_in(type(component), port, surrounded=surrounded):
         return "BUILT_IN"
     return "TUNABLE" if port.tunable else "FIXED"
 

@@ -66,6 +66,7 @@ def off(carried, still, t, water):
 UNIT = st.floats(-1, 1)
 
 
+@pytest.mark.slow
 @settings(max_examples=100, deadline=None)
 @given(
     water=st.tuples(UNIT, UNIT, st.just(0.0)),  # the wind has no third component
@@ -89,7 +90,9 @@ def test_in_a_current_the_rates_of_change_are_those_in_still_water(
     still, carried = slopes
     still[:3] += water
     still[6:9] -= np.cross(nu[3:], R.T @ water)
-    np.testing.assert_allclose(carried, still, rtol=1e-11, atol=1e-11)
+    # Where the flow at a part all but vanishes, the rounding of current minus current is what is
+    # left of it, and roots of it make more of that.
+    np.testing.assert_allclose(carried, still, rtol=1e-11, atol=1e-10)
 
 
 def test_a_current_carries_a_craft_with_all_parts():

@@ -35,6 +35,7 @@ void loop() { if (Serial.available()) Serial.write(Serial.read()); if (millis() 
         assert bench.one.get("pulse.s1") == pytest.approx(0.00175, abs=1e-6)
 
 
+@pytest.mark.long
 @both
 def test_a_switch_to_ground_is_seen_whatever_the_pull_up_does(tmp_path, backend):
     """ATmega2560 data sheet, 13.2: a pull-up has 20 to 50 kOhm; a closed switch wins."""

@@ -56,6 +56,7 @@ def test_it_takes_what_the_camera_gives():
     assert BLOCKS == SLOTS
 
 
+@pytest.mark.slow
 @both
 def test_a_camera_as_its_maker_reads_it(tmp_path, backend):
     wires = {"wires": "0x54 pixy", "backend": backend}

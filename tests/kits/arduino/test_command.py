@@ -122,6 +122,7 @@ NEW = {
 }
 
 
+@pytest.mark.slow
 def test_new_writes_what_runs_at_once(tmp_path):
     need("host")
     done = seatrial("sketch", "new", "my-helm_2", cwd=tmp_path)
@@ -144,6 +145,7 @@ def test_new_writes_what_runs_at_once(tmp_path):
     assert "nothing is written, for there is already" in again.stderr
 
 
+@pytest.mark.long
 @pytest.mark.interop
 def test_the_firmware_of_new_and_another_vehicle(tmp_path):
     need("simavr")

@@ -39,6 +39,7 @@ def test_a_motor_with_too_small_a_gear_loses_steps(tmp_path: Path) -> None:
     assert done("gloria-stepper-stall", tmp_path).passed
 
 
+@pytest.mark.long
 @pytest.mark.interop
 @pytest.mark.parametrize("backend", ["host", "simavr"])
 def test_the_boat_gets_its_marks_and_sails(backend: str, tmp_path: Path) -> None:

@@ -84,6 +84,7 @@ def test_the_shipped_trials_hold(tmp_path, name):
     passes(sailed(name, tmp_path / "run"))
 
 
+@pytest.mark.long
 def test_the_rov_obeys_its_serial_port_and_stops_without(tmp_path):
     passes(sailed("videoray-sketch", tmp_path / "run"))
 

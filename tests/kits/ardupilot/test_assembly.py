@@ -80,6 +80,7 @@ def has_ended(pid: int) -> bool:
     return False
 
 
+@pytest.mark.slow
 def test_a_program_is_started_in_the_run_folder_and_ended_with_it(program: Path) -> None:
     # The stand-in drives off at once, before any firmware could: no line holds it.
     folder = flown("hydrone", program, "run", "--set", "autopilot.mooring.stiffness=0")
@@ -98,6 +99,7 @@ def test_a_program_is_started_in_the_run_folder_and_ended_with_it(program: Path)
     assert row["vehicle.hull.attitude.psi"] == pytest.approx(0.0, abs=0.01)
 
 
+@pytest.mark.slow
 def test_both_engines_and_each_run_give_the_same_bytes(program: Path) -> None:
     first, *others = (
         (flown("hydrone", program, f"run{number}", "--engine", engine) / "signals.csv").read_bytes()
@@ -114,6 +116,7 @@ def test_a_pulse_above_the_middle_turns_the_mariner_to_starboard(program: Path) 
     assert parameters("mariner").get("SERVO1_REVERSED", 0.0) == 0.0
 
 
+@pytest.mark.slow
 def test_a_pulse_above_the_middle_turns_gloria_to_port(program: Path) -> None:
     headings = []
     for pulse in (1.45e-3, 1.55e-3):
@@ -128,6 +131,7 @@ def test_a_pulse_above_the_middle_turns_gloria_to_port(program: Path) -> None:
     assert row["autopilot.sitl.ardupilot.pulse.ch2"] == pytest.approx(1500e-6)  # no pulse is given
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("like", "moved", "least"),
     [
@@ -250,6 +254,7 @@ def waiting(tmp_path: Path):
     process.communicate()
 
 
+@pytest.mark.slow
 def test_a_run_that_waits_says_what_to_start_and_can_be_stopped(waiting, tmp_path: Path) -> None:
     process, said = waiting
     assert "start ArduPilot, in a folder of its own:" in said

@@ -39,6 +39,7 @@ def on_its_sphere(positions: np.ndarray, latitude: float) -> np.ndarray:
     return np.transpose([(lat - start) * metres, lon * metres * middle, down])
 
 
+@pytest.mark.sampled(5)
 @pytest.mark.parametrize(
     ("vehicle", "sea"),
     [(vehicle, sea) for vehicle in VEHICLES for sea in SEAS if sea == EVERY or vehicle == "otter"],

@@ -31,6 +31,7 @@ def built(folder: Path, module: str) -> None:
     program.chmod(0o755)
 
 
+@pytest.mark.long
 @pytest.mark.interop
 def test_from_nothing_to_a_hull_under_ardupilot(tmp_path: Path) -> None:
     built(tmp_path, "tests.kits.mavlink.ground_station.vehicle")

@@ -77,6 +77,7 @@ def test_a_program_that_floods_an_adapter_waits(opened):
         os.close(descriptor)
 
 
+@pytest.mark.slow
 def test_a_line_that_never_ends_is_refused():
     """python-can's driver for serial adapters keeps what has come until a line is whole."""
     ours, theirs = os.openpty()

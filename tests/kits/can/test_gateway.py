@@ -65,6 +65,7 @@ def read(bus, count):
 GATEWAYS = ["socketcand:127.0.0.1:0", "slcan-tcp:127.0.0.1:0", "slcan-pty", "virtual:gateway-{}"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("gateway", GATEWAYS)
 def test_nothing_is_lost_either_way_at_a_thousand_frames_a_second(gateway, request):
     with Served(gateway.format(request.node.name)) as served, open_bus(served) as bus:
@@ -147,6 +148,7 @@ def test_error_frames_reach_socketcands_clients():
         assert all(each.is_error_frame for each in found)
 
 
+@pytest.mark.slow
 def test_the_handshake_stands_alone_on_a_busy_bus():
     """python-can's client wants each reply in a read of its own, whatever is on the bus."""
     with Served("socketcand:127.0.0.1:0") as served:
@@ -314,6 +316,7 @@ def test_an_adapter_answers_every_command():
         assert [frame for _, frame in served.received] == [Frame(0x123, b"\x11\x22")]
 
 
+@pytest.mark.slow
 def test_dronecans_slcan_driver_at_a_pseudo_terminal():
     with Served("slcan-pty") as served:
         driver = SLCAN(served.at, bitrate=1_000_000)
@@ -368,6 +371,7 @@ def test_a_port_in_use_is_named():
     gateway(first.get("reached_at")).close()
 
 
+@pytest.mark.slow
 def test_a_real_adapters_program_is_a_gateway_too(monkeypatch):
     """python-can's slcan interface at this side of a pseudo-terminal, an adapter at the other."""
     monkeypatch.delenv(ALLOWED, raising=False)

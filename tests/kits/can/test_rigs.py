@@ -115,6 +115,7 @@ def test_shipped_trials_hold(name, tmp_path):
     assert [name for name, _, verdict in result.verdicts if not verdict.passed] == []
 
 
+@pytest.mark.long
 def test_both_carriers_leave_the_same_logs(tmp_path):
     runs = [
         run_trial(load_trial("can-bus-off"), tmp_path / engine, engine=engine)

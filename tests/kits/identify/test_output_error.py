@@ -43,6 +43,7 @@ LIMITS = reference_limits()
 BY_NAME = {case.name: case for case in CASES}
 
 
+@pytest.mark.long
 @pytest.mark.interop
 @pytest.mark.parametrize("seed", [101, 102, 103])
 @pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)
@@ -111,6 +112,7 @@ def test_without_noise_everything_is_found(reading, law):
         assert found.values[name] == pytest.approx(value, rel=1e-5), name
 
 
+@pytest.mark.slow
 def test_a_lag_is_missed_where_it_is_and_not_seen_where_it_is_not():
     truth = {"linear": -0.3, "quadratic": -1.5, "thrust": 8.0, "time_constant": 0.15}
     lagging = output_error(made(Structure("linear", "thruster"), noise=0.02, **truth), range(5))
@@ -121,6 +123,7 @@ def test_a_lag_is_missed_where_it_is_and_not_seen_where_it_is_not():
     assert prompt.deviation("time_constant") == 0.0
 
 
+@pytest.mark.slow
 def test_a_free_run_fits_its_own_start_and_no_parameter():
     run = synthetic(BY_NAME["surge, 2.4 cm/s²"], 7)
     cut = 800

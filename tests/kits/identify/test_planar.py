@@ -71,6 +71,7 @@ def test_exact_readings_give_back_what_made_them(turns):
     assert np.all(found.scales < 1e-5)
 
 
+@pytest.mark.slow
 def test_with_noise_within_three_of_the_deviations_it_states(turns):
     commands, readings = turns
     noisy = readings + NOISE * np.random.default_rng(5).normal(size=readings.shape)
@@ -205,6 +206,7 @@ def test_a_short_log_is_refused(pool):
         planar_study(read_experiment(str(pool(rows=60))))
 
 
+@pytest.mark.long
 @pytest.mark.interop
 def test_the_vehicle_is_found_again_in_six_degrees_of_freedom(tmp_path):
     """Truth is vehicles/videoray.toml; the tolerances contain what roll, pitch and heave do."""

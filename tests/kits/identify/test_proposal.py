@@ -121,6 +121,7 @@ def released(kind: str) -> str:
     return f"finally abs(hull.attitude.phi - {expected} deg) < 0.05 deg"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", KINDS)
 def test_the_file_runs(kind, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)

@@ -21,6 +21,7 @@ AXES = {
 }
 
 
+@pytest.mark.long
 @pytest.mark.interop
 @pytest.mark.parametrize("axis", AXES)
 def test_the_vehicle_is_found_again(axis, tmp_path):

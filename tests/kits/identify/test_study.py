@@ -51,6 +51,7 @@ def test_held_out_data_is_not_seen(pool, surge):
     assert not other.accepted
 
 
+@pytest.mark.slow
 def test_a_second_log_checks(pool, surge):
     text = EXPERIMENT.replace('log = "pool.csv"', 'log = "pool.csv"\ntest_log = "other.csv"')
     path = pool(text=text)
@@ -91,6 +92,7 @@ def test_the_vehicle_file_is_the_base_with_a_variant(pool, tmp_path):
     assert rov.added_mass[1] == 6.05
 
 
+@pytest.mark.long
 @pytest.mark.interop
 def test_another_axis_is_added_to_an_identified_vehicle(pool, tmp_path):
     first = found_in(pool(text=BASE))
@@ -150,6 +152,7 @@ def identify(*arguments, cwd):
     return seatrial("identify", *arguments, cwd=cwd)
 
 
+@pytest.mark.slow
 def test_the_command(pool, tmp_path):
     pool(text=BASE)
     done = identify("pool.toml", "--out", "out", cwd=tmp_path)

@@ -206,6 +206,7 @@ def runs_alike(path: Path, rig: Path, folder: Path) -> None:
     box.fmu.freeInstance()
 
 
+@pytest.mark.slow
 def test_the_numbers_of_the_rig(jacobi: Path, folder: Path, tmp_path: Path) -> None:
     runs_alike(jacobi, folder / "jacobi.toml", tmp_path)
 
@@ -340,6 +341,7 @@ def hydrone(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder / "sil.fmu"
 
 
+@pytest.mark.long
 @pytest.mark.interop
 def test_the_closed_loop_of_a_vehicle(hydrone: Path, tmp_path: Path) -> None:
     """GNSS with noise and delay, a fault by its text: the numbers of the rig in Python."""
@@ -527,6 +529,7 @@ def test_a_loop_in_one_fmu(stiffening: Path, tmp_path: Path) -> None:
     box.fmu.freeInstance()
 
 
+@pytest.mark.slow
 def test_sums(folder: Path, tmp_path: Path) -> None:
     """A number and a vector, fed from inside and from outside; a state restored."""
     text = RIG.format(algorithm="plain-jacobi").partition('"mass.pull"')[0]

@@ -215,6 +215,7 @@ def test_cyclic_and_deep_references_are_refused(yard: Yard, tmp_path: Path) -> N
     assert "systems nest deeper than" in message
 
 
+@pytest.mark.slow
 def test_references_that_double_at_each_level_end(yard: Yard, tmp_path: Path) -> None:
     two = "".join(
         f'<ssd:Component name="{n}" type="application/x-ssp-definition" source="{{0}}.ssd"/>'
@@ -287,6 +288,7 @@ def test_a_zip_without_description_and_a_text_are_no_packages(tmp_path: Path) ->
         refused(tmp_path / name)
 
 
+@pytest.mark.slow
 @settings(
     max_examples=15, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
 )

@@ -76,6 +76,7 @@ def connected(system: etree._Element) -> dict[str, str]:
     return found
 
 
+@pytest.mark.slow
 def test_a_rig_in_a_rig_is_a_system_that_values_cross_at_connectors(
     outer: Path, tmp_path: Path
 ) -> None:
@@ -115,6 +116,7 @@ def test_a_rig_in_a_rig_is_a_system_that_values_cross_at_connectors(
     assert units == ["deg"]
 
 
+@pytest.mark.slow
 def test_fmpy_runs_a_nested_package_as_one_of_one_system(outer: Path, tmp_path: Path) -> None:
     nested, _ = export_ssp(str(outer), tmp_path / "nested.ssp", tool="fmpy")
     flat, _ = export_ssp(str(outer), tmp_path / "flat.ssp", tool="libcosim")
@@ -167,6 +169,7 @@ def test_a_shipped_rig_of_rigs_survives_a_package(tmp_path: Path) -> None:
     assert again.read_bytes() == path.read_bytes()
 
 
+@pytest.mark.slow
 def test_what_links_tune_stays_at_its_start_and_a_note_says_so(tmp_path: Path) -> None:
     choices = {"vehicle": "mariner", "autopilot": "mavlink"}
     path, notes = export_ssp(

@@ -249,6 +249,7 @@ def test_a_calculated_parameter_reaches_a_fixed_one_before_the_run(
         system.free()
 
 
+@pytest.mark.slow
 def test_an_output_cannot_feed_a_fixed_parameter(given) -> None:
     top = elements(
         component("a", connector("k", "parameter")),

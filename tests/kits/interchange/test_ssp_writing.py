@@ -51,6 +51,7 @@ def test_a_package_reads_back_as_the_rig_it_was(rig: Path, tmp_path: Path) -> No
     assert any("no stop time: the package says 10 s" in note for note in notes)
 
 
+@pytest.mark.slow
 def test_the_same_rig_gives_the_same_bytes(rig: Path, tmp_path: Path) -> None:
     first, _ = export_ssp(str(rig), tmp_path / "a.ssp")
     second, _ = export_ssp(str(rig), tmp_path / "b.ssp")
@@ -85,6 +86,7 @@ def test_nothing_is_found_against_a_package_of_ours_but_what_tools_leave_out(
     assert [one for one in findings(path) if one.rejects] == []
 
 
+@pytest.mark.slow
 def test_an_fmu_of_somebody_else_is_copied_as_it_is(write, tmp_path: Path) -> None:
     write("boats.py", BOATS)
     plain = write("plain.toml", RIG.format(hull="boats.py:Hull"))
@@ -112,6 +114,7 @@ def test_a_trial_carries_its_settings_and_names_what_is_left_out(rig: Path, writ
     assert sum("it has none" in note for note in notes) == 2
 
 
+@pytest.mark.slow
 def test_seeds_travel_as_parameters(tmp_path: Path) -> None:
     path, _ = export_ssp("landing", tmp_path / "x.ssp")
     read = read_ssp(path).rig.components
@@ -203,6 +206,7 @@ twice = { fmu = "DISPLAY" }
 """
 
 
+@pytest.mark.slow
 def test_connections_that_do_not_convert_units_do_not_when_read_back(write, tmp_path: Path) -> None:
     write("speeds.py", SPEEDS)
     text = SHOWN.replace("LOG", "speeds.py:Log").replace("DISPLAY", "speeds.py:Display")

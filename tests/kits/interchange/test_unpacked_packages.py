@@ -65,6 +65,7 @@ def test_a_mistake_names_the_file_in_the_folder(shared: Path, tmp_path: Path) ->
         read_ssp(tmp_path / "own.ssd")
 
 
+@pytest.mark.slow
 def test_a_proxied_fmu_of_a_package_is_isolated(shared: Path, tmp_path: Path) -> None:
     members = {
         "resources/two.fmu": (shared / "two.fmu").read_bytes(),

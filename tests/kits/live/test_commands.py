@@ -71,6 +71,7 @@ def test_a_rig_runs_without_a_trial() -> None:
     assert trial.file.choices["vehicle"] == "otter"
 
 
+@pytest.mark.slow
 def test_a_page_is_there_while_the_run_is_and_no_longer(tmp_path: Path) -> None:
     """In processes of their own, as the command does it."""
     from urllib.request import HTTPCookieProcessor, build_opener
@@ -109,6 +110,7 @@ def _recording(page: str) -> bytes:
     )
 
 
+@pytest.mark.slow
 def test_a_report_plays_its_run(hydrone: Path, tmp_path: Path) -> None:
     text = write_report(hydrone, play=played).read_text("utf-8")
     content = _recording(text)
@@ -119,6 +121,7 @@ def test_a_report_plays_its_run(hydrone: Path, tmp_path: Path) -> None:
     assert len(base64.b64encode(content)) < 3e6
 
 
+@pytest.mark.slow
 def test_cases_share_the_viewer_and_stay_small(tmp_path: Path) -> None:
     trial = load_trial("hydrone-landing-waves", changes={"stop": "5 s"}, origin="test")
     result = run_supervised(trial, tmp_path / "case", engine="direct")
@@ -130,6 +133,7 @@ def test_cases_share_the_viewer_and_stay_small(tmp_path: Path) -> None:
     assert len(recording[1]) < 0.25e6
 
 
+@pytest.mark.slow
 def test_a_record_gives_the_same_recording(hydrone: Path) -> None:
     run = load_run(hydrone)
     first, second = played(run), played(run)

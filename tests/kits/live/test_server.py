@@ -176,6 +176,7 @@ def test_junk_on_the_socket_is_counted_and_a_viewer_goes_on(server: PageServer) 
     assert server.gate.refused == {"messages": len(raw) + 1}
 
 
+@pytest.mark.slow
 def test_a_viewer_who_sends_only_junk_is_sent_away(server: PageServer) -> None:
     with _opened(server) as viewer, pytest.raises(ConnectionClosed) as error:
         for _ in range(150):

@@ -81,6 +81,7 @@ def test_what_stretches_begins_at_its_origin() -> None:
     assert _solid(mesh_of(part)).bounds[:, 0] == pytest.approx([0.0, 2.0])
 
 
+@pytest.mark.slow
 def test_ports_become_the_signals_that_feed_them(gloria: Path, hydrone: Path) -> None:
     boat = load_run(gloria).manifest["components"]["boat"]
     moved = {part["turn"]["signal"] for part in boat["shape"] if "turn" in part}

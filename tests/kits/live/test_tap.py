@@ -104,6 +104,7 @@ def test_pause_stops_time_and_a_step_is_one_step(tmp_path: Path) -> None:
     assert result.status == "complete"
 
 
+@pytest.mark.slow
 def test_what_is_done_by_hand_is_a_trial_with_the_same_bytes(tmp_path: Path) -> None:
     with paused(landing("4 s"), tmp_path / "live") as page:
         for _ in range(5):
@@ -178,6 +179,7 @@ def test_who_comes_late_sees_what_was_before(tmp_path: Path) -> None:
     assert np.isnan(columns[heading][1:]).all()
 
 
+@pytest.mark.slow
 def test_at_most_thirty_frames_a_second(tmp_path: Path) -> None:
     with Page(landing("1 s"), tmp_path / "run", factor=1.0) as page:
         begun, frames = time.monotonic(), 0
@@ -234,6 +236,7 @@ def test_what_can_be_set_is_named_with_unit_and_limits(tmp_path: Path) -> None:
         assert "vehicle.port_thruster.pulse" not in keys  # the autopilot feeds it
 
 
+@pytest.mark.slow
 def test_the_page_gets_a_lost_link(write, tmp_path: Path) -> None:
     with socket.create_server(("127.0.0.1", 0)) as server:
         link = f"tcpout:127.0.0.1:{server.getsockname()[1]}"

@@ -145,6 +145,7 @@ def test_foxglove_sees_the_craft_where_it_is(run: Run, tmp_path: Path) -> None:
     assert (mark.pose.position.x, mark.pose.position.y) == (7.0, 5.0)
 
 
+@pytest.mark.slow
 def test_a_ros_2_bag_reads_back(run: Run, tmp_path: Path) -> None:
     write_ros2_bag(run, tmp_path / "bag")
     (file,) = (tmp_path / "bag").glob("*.mcap")

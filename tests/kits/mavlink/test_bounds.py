@@ -156,6 +156,7 @@ def planned(vehicle, folder):
     (folder / "mission.waypoints").write_text(text)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("examples", [1, pytest.param(20, marks=pytest.mark.long)])
 @pytest.mark.parametrize("vehicle", VEHICLES)
 def test_a_short_mission_under_extreme_orders_goes_on(vehicle, examples, tmp_path):

@@ -78,6 +78,7 @@ def rows(firmware):
     return [(pattern, aspect) for pattern, of, aspect in cells if of in ("both", firmware)]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("firmware", ["rover", "sub"])
 def test_answers_are_the_firmwares_or_the_page_says_why(firmware, tmp_path):
     recorded = json.loads((REFERENCE / f"ardupilot_answers_{firmware}.json").read_text("utf-8"))

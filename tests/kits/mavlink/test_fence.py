@@ -38,6 +38,7 @@ def place(point):
 # ---------------------------------------------------------------------- geometry
 
 
+@pytest.mark.slow
 @given(st.lists(points, min_size=3, max_size=9), st.lists(points, min_size=1, max_size=20))
 def test_convex_polygons_contain_what_a_triangulation_does(corners, tried):
     try:

@@ -42,6 +42,7 @@ def test_fs_gcs_timeout_is_how_long_it_waits() -> None:
     assert bench.vehicle.mode.name == "hold"
 
 
+@pytest.mark.slow
 def test_fs_gcs_enable_switches_it_off() -> None:
     bench = Bench()
     guided_alone(bench)

@@ -54,6 +54,7 @@ boat = {{ fmu = "mavlink"{component}, set = {{ links = "udpout:127.0.0.1:{port}"
     return str(write("trial.toml", 'rig = "rig.toml"\nstop = "5 s"\nstart = "2 s"\n'))
 
 
+@pytest.mark.slow
 def test_the_log_is_beside_the_run_and_the_same_in_every_carrier(
     write, listener: int, tmp_path: Path
 ) -> None:

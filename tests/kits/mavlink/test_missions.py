@@ -215,6 +215,7 @@ def test_loiter_unlimited(radius, circle):
     assert boat.current() == (1, ACTIVE)
 
 
+@pytest.mark.slow
 def test_loiter_time_is_waited_by_guidance():
     boat = Mission(listed(one(LOITER_TIME, 12.0, p3=-5.0), one(at=north_of(9))))
     boat.go()

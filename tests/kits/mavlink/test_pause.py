@@ -229,6 +229,7 @@ def test_handlers_of_the_host_stay_untouched_in_another_thread():
     assert found == [(signal.getsignal(signal.SIGTERM), False)]
 
 
+@pytest.mark.slow
 def test_the_component_waits_in_its_step_and_says_how_long(connect):  # noqa: F811
     boat = made(speedup_start=2.0)
     boat.initialise()

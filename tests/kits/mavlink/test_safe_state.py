@@ -96,6 +96,7 @@ def is_armed(heartbeat: Any) -> bool:
     return bool(heartbeat.base_mode & mavlink.MAV_MODE_FLAG_SAFETY_ARMED)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("signed", "isolated"),
     [

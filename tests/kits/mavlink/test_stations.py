@@ -7,6 +7,7 @@ from seatrial_kits.mavlink.transport import Sender
 from .bench import OTHER_STATION, STATION, Bench
 
 
+@pytest.mark.slow
 def test_before_the_first_ground_station_nothing_happens():
     bench = Bench()
     bench.arm()
@@ -14,6 +15,7 @@ def test_before_the_first_ground_station_nothing_happens():
     assert (bench.vehicle.armed, bench.vehicle.failsafe) == (True, False)
 
 
+@pytest.mark.slow
 def test_only_the_station_that_steers_an_ardupilot_is_missed():
     for autopilot, lost in [("ardupilotmega", True), ("px4", False)]:
         bench = Bench(station_timeout=5.0, autopilot=autopilot)
@@ -166,6 +168,7 @@ def test_a_vehicle_that_needs_a_station_does_not_arm_before_the_first():
     assert bench.command(ARM, 1) == ACCEPTED
 
 
+@pytest.mark.slow
 def test_manual_control_that_was_lost_is_missed_again_in_the_next_manual_mode():
     bench = Bench(manual_timeout=3.0)
     bench.receive(mavlink.MAVLink_manual_control_message(7, 0, 0, 1000, 0, 0))

@@ -3,6 +3,7 @@
 import math
 import random
 
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from pymavlink.dialects.v20 import all as mavlink
@@ -70,6 +71,7 @@ messages = st.one_of(
 steps = st.lists(st.tuples(messages, st.booleans(), st.floats(0.0, 12.0)), max_size=30)
 
 
+@pytest.mark.slow
 @settings(max_examples=CASES, deadline=None)
 @given(steps, st.booleans(), st.sampled_from(["ardupilotmega", "px4"]))
 def test_no_message_is_too_much(sent, submerged, autopilot):

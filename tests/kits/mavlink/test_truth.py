@@ -370,6 +370,7 @@ def differs(given, spec, truth, slack):
 ON_REQUEST = ("ODOMETRY", "HIL_STATE_QUATERNION")
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("vehicle", VEHICLES)
 def test_every_field_is_the_truth(vehicle):
     """Driven by a station while it drifts, heels and pitches; messages are of the step's start."""

@@ -67,6 +67,7 @@ def test_most_plants_are_native() -> None:
     assert "marine-craft" in NATIVE
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "name",  # the compiler takes many seconds for the largest
     [n if n == "marine-craft" else pytest.param(n, marks=pytest.mark.long) for n in NATIVE],
@@ -101,6 +102,7 @@ def test_same_numbers_to_the_bit(name: str, tmp_path: Path) -> None:
     slave.fmu.freeInstance()
 
 
+@pytest.mark.slow
 def test_a_shipped_trial_has_the_same_record(tmp_path: Path) -> None:
     """A drone lands on a native hull, the rest of the rig in process, parameters by the rig."""
     harness = Path(__file__).parents[3] / "harness"
@@ -144,6 +146,7 @@ def spring(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Slave:
     return Slave(built(f"{__file__}:Spring", tmp_path), tmp_path)
 
 
+@pytest.mark.slow
 def test_closed_form_and_rollback(spring: Slave) -> None:
     """x = cos(2 t): a spring of 4 N/m with 1 kg, let go at 1 m."""
     spring.begin()
@@ -163,6 +166,7 @@ def test_closed_form_and_rollback(spring: Slave) -> None:
     assert spring.fmu.getReal([x]) == [1.0]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "value", "running", "message"),
     [
@@ -187,6 +191,7 @@ def test_what_does_not_fit_is_refused(name, value, running, message, spring: Sla
     assert message in spring.messages[0]
 
 
+@pytest.mark.slow
 def test_a_diverging_step_is_discarded(spring: Slave) -> None:
     spring.begin()
     spring.fmu.setReal([spring.reference["force"]], [1.7e308])
@@ -196,6 +201,7 @@ def test_a_diverging_step_is_discarded(spring: Slave) -> None:
     assert "output" in spring.messages[0]
 
 
+@pytest.mark.slow
 def test_numbers_that_a_start_needs_may_come_with_the_run(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -218,6 +224,7 @@ def test_what_cannot_be_native_is_refused(tmp_path: Path) -> None:
     assert list(tmp_path.iterdir()) == []
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(shutil.which("bwrap") is None, reason="bubblewrap is not installed")
 def test_a_host_without_python(tmp_path: Path) -> None:
     """A C program that sees the C library and the FMU, and no other file."""

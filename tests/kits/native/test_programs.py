@@ -198,6 +198,7 @@ def test_values_of_ever_more_kinds_have_no_c(text: str, why: str, tmp_path: Path
         Unit(cls()).translate()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("first", [0, 1000])
 def test_some_programs(first: int) -> None:
     check_seeds(first, 12)

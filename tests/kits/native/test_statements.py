@@ -138,6 +138,8 @@ class Pair:
         return found
 
 
+@pytest.mark.sampled(25)
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "version"),
     [
@@ -181,6 +183,7 @@ def test_same_numbers_to_the_bit(name: str, version: int, tmp_path: Path) -> Non
     assert len(seen) > 1
 
 
+@pytest.mark.slow
 def test_parameters_are_numbers_of_the_run(tmp_path: Path) -> None:
     """One FMU, another compass: numbers are set by whoever runs it."""
     pair = Pair("compass", tmp_path, {})
@@ -216,6 +219,7 @@ class Figures(Component):
         )
 
 
+@pytest.mark.slow
 def test_norms_and_sums_are_those_of_this_python(tmp_path: Path) -> None:
     """Numbers of all sizes, in which each rounding error shows."""
     slave = Slave(built(f"{__file__}:Figures", tmp_path), tmp_path)
@@ -251,6 +255,7 @@ class Dice(Noise, Sampled):
         return int(generator.integers(-3, 4))
 
 
+@pytest.mark.slow
 def test_one_generator_is_drawn_from_in_several_places(tmp_path: Path) -> None:
     slave = Slave(built(f"{__file__}:Dice", tmp_path), tmp_path)
     slave.begin()
@@ -316,6 +321,7 @@ class Opener(Sampled):
             self.y = len(file.read())
 
 
+@pytest.mark.slow
 def test_a_component_of_ones_own(tmp_path: Path) -> None:
     path = built(f"{__file__}:Doubler", tmp_path)
     slave = Slave(path, tmp_path)
@@ -381,6 +387,7 @@ def _values(rig: str, engine: str, steps: int, **settings: Any) -> list[list[flo
         return rows
 
 
+@pytest.mark.long
 @pytest.mark.interop
 @pytest.mark.parametrize("rig", ["landing", "thruster-ship", "mariner-pd"])
 def test_a_rig_runs_in_c_where_it_can(rig: str) -> None:

@@ -34,6 +34,7 @@ REFUSED_WHEN_BUILT = {"Large", "Exact", "NotANumber"}
 """Odd components whose C ends the run where Python goes on."""
 
 
+@pytest.mark.sampled(6)
 @pytest.mark.parametrize("cls", ALL, ids=lambda cls: cls.__name__)
 def test_odd_components_stay_python_or_are_the_same(cls: Any, tmp_path: Path) -> None:
     why = why_python(cls)
@@ -53,6 +54,7 @@ def _texts() -> list[str]:
     return [*ODD.strip().split("\n"), *(f"self.v_NO_ += float({each})" for each in beyond if each)]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("part", range(6))
 def test_what_lies_just_beyond(part: int) -> None:
     """Each odd statement and expression of the grammar, filled in three ways."""
@@ -88,6 +90,7 @@ def own_cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return folder
 
 
+@pytest.mark.slow
 def test_c_that_differs_is_refused_with_both_values(
     own_cache: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -89,6 +89,7 @@ def has_ended(pid: int) -> bool:
     return False
 
 
+@pytest.mark.slow
 def test_a_program_is_started_in_the_run_folder_and_ended_with_it(program: Path) -> None:
     folder = flown("hydrone", program, "run", "--engine", "direct")
     own = folder / NAME
@@ -107,6 +108,7 @@ def test_a_program_is_started_in_the_run_folder_and_ended_with_it(program: Path)
     assert row["vehicle.hull.attitude.psi"] == pytest.approx(0.0, abs=0.01)
 
 
+@pytest.mark.slow
 def test_it_runs_as_an_fmu(program: Path) -> None:
     row = last_row(flown("otter", program, "run", "--engine", "fmu"))
     assert row[f"{NAME}.pulse.ch1"] == pytest.approx(1700e-6)
@@ -149,6 +151,7 @@ def test_what_cannot_be_started_is_bad_input(tmp_path: Path, autopilot: str, sai
     assert not list(tmp_path.iterdir())
 
 
+@pytest.mark.slow
 def test_a_run_that_waits_says_what_to_start_and_can_be_stopped(tmp_path: Path) -> None:
     command = [SEATRIAL, "run", "under-px4", *at(instance()), "--out", "run", "--engine", "direct"]
     process = subprocess.Popen(command, cwd=tmp_path, stderr=subprocess.PIPE, text=True)

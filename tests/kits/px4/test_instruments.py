@@ -149,6 +149,7 @@ def test_instruments_that_are_taken_away_send_nothing():
     assert {each.fields_updated for each in of(messages, "HIL_SENSOR")} == {0x3F}
 
 
+@pytest.mark.slow
 def test_noise_is_as_large_as_it_says_and_keyed_by_the_seed():
     noise = {"gyro_noise": 0.01, "accelerometer_noise": 0.1, "field_noise": 1e-6}
 

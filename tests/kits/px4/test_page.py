@@ -23,6 +23,7 @@ def test_the_page_has_both_ways_to_start() -> None:
     assert [("px4=" in each) for each in COMMANDS] == [True, True, False]
 
 
+@pytest.mark.slow
 def test_what_the_page_says_runs(program: Path, tmp_path: Path) -> None:  # noqa: F811
     shutil.copytree(program.parents[1], tmp_path / "build" / "px4_sitl_default")
     quick = ("--set", "stop=2 s", "--set", f"{NAME}.speedup=100", *at(instance()))

@@ -159,6 +159,7 @@ def test_other_types_and_qualities_are_named(otter, node, caplog):
     assert len(kept) == 3
 
 
+@pytest.mark.slow
 def test_a_node_that_is_killed_leaves_the_vehicle_neutral_and_the_run_goes_on(otter, peer, caplog):
     simulation, process = otter(period="100 ms", truth_period="100 ms"), peer("thrust")
     until = time.monotonic() + 20.0

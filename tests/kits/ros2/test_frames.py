@@ -19,6 +19,7 @@ def there(attitude):
     return Rotation.from_matrix(np.array([[y, x, -z] for x, y, z in axes]).T)
 
 
+@pytest.mark.slow
 def test_random_attitudes_are_those_of_scipy():
     angles = RANDOM.uniform(-1.0, 1.0, (10_000, 3)) * [math.pi, math.pi / 2, math.pi]
     found = Rotation.from_quat([quaternion(each) for each in angles])

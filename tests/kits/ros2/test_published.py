@@ -207,6 +207,7 @@ def test_the_field_turns_with_the_heading_and_an_imu_without_attitude_says_so(li
     assert found["linear_acceleration_covariance"][0] == -1.0
 
 
+@pytest.mark.slow
 def test_a_receiver_that_fails_says_no_fix_and_a_stuck_one_goes_on(ears):
     otter = ears("otter")
     otter.simulation.run("2 s")

@@ -1,5 +1,7 @@
 """The Otter sailed by a node of somebody else, in a process of its own."""
 
+import pytest
+
 from seatrial import Simulation
 from tests.command import seatrial_process
 
@@ -20,6 +22,7 @@ def otter(domain, **settings):
     )
 
 
+@pytest.mark.slow
 def test_a_helmsman_rounds_a_corner_by_velocities_and_twice_with_the_same_bytes(
     domain, peer, tmp_path
 ):
@@ -51,6 +54,7 @@ def test_a_helmsman_rounds_a_corner_by_velocities_and_twice_with_the_same_bytes(
     assert len(first.read_text().splitlines()) > 15
 
 
+@pytest.mark.slow
 def test_a_helmsman_sails_by_thrusts_and_the_pilot_takes_no_part(domain, peer):
     peer("thrust")
     with otter(domain, lockstep="counted", awaited="port.thrust starboard.thrust") as simulation:

@@ -50,6 +50,7 @@ def test_topics_that_are_not_there_are_named(otter):
         node.expect("pressure", within="0.1 s")
 
 
+@pytest.mark.slow
 def test_a_bag_has_what_a_recorder_would_have(tmp_path, domain):
     """Written by the link as an FMU, read by mcap-ros2-support, which knows nothing of rosbags."""
     from mcap.reader import make_reader

@@ -56,6 +56,7 @@ def test_a_criterion_that_does_not_hold_is_status_1(tmp_path):
     assert "FAIL  turning: advance" in done.stdout
 
 
+@pytest.mark.slow
 def test_figures_of_a_run_and_of_a_log_beside_it(run, tmp_path):
     path = str(FOLDER / f"{TURN}.csv")
     done = figures(path, "--manoeuvre", "turning-circle", "--columns", NAMES, "--compare",

@@ -135,6 +135,7 @@ def test_a_spiral_goes_from_side_to_side_and_back():
     assert trial.ended is not None
 
 
+@pytest.mark.slow
 def test_a_reverse_spiral_finds_the_branch_that_is_not_stable():
     trial = Trial(kind="reverse-spiral", stable=False, longest=2000.0)
     assert trial.ended is not None
@@ -159,6 +160,7 @@ def test_an_order_ends_though_nothing_becomes_steady():
     assert trial.ended - order == pytest.approx(40.0, abs=0.3)
 
 
+@pytest.mark.slow
 def test_a_speed_trial_runs_there_and_back_with_each_power():
     trial = Trial(kind="speed-trial", longest=3000.0)
     assert trial.ended is not None

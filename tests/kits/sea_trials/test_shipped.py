@@ -35,6 +35,7 @@ def test_a_trial_is_the_manoeuvre_of_its_name(trial):
     assert kind in KINDS
 
 
+@pytest.mark.long
 @pytest.mark.interop
 def test_the_mariner_turns_as_computed_elsewhere(tmp_path):
     changes = {
@@ -52,6 +53,7 @@ def test_the_mariner_turns_as_computed_elsewhere(tmp_path):
     assert found["steady_rate"] < 0.0
 
 
+@pytest.mark.long
 @pytest.mark.interop
 def test_the_kvlcc2_under_her_pilot_turns_as_the_reference(tmp_path):
     changes = {"choices.vehicle": "kvlcc2", "variant": "model"}

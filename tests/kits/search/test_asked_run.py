@@ -29,6 +29,7 @@ def answered(asked, tmp_path):
     return campaign, ask(campaign, "sensitivity", tmp_path / "answer", How("direct", jobs=1))[1]
 
 
+@pytest.mark.slow
 def test_a_run_sets_what_its_row_says(answered):
     campaign, folder = answered
     table = pd.read_parquet(folder / "results.parquet")
@@ -41,6 +42,7 @@ def test_a_run_sets_what_its_row_says(answered):
         assert case.set["seed"] == row["seed"]
 
 
+@pytest.mark.slow
 def test_the_page_s_command_runs_it_again(answered, tmp_path):
     _, folder = answered
     page = write_table_page(folder).read_text("utf-8")
@@ -53,6 +55,7 @@ def test_the_page_s_command_runs_it_again(answered, tmp_path):
     assert signals["form.y"].iloc[-1] == row["worst of within"]
 
 
+@pytest.mark.slow
 def test_folders_of_others_and_numbers_beyond_are_refused(answered, asked, tmp_path):
     campaign, folder = answered
     with pytest.raises(InputError, match="from 1 to 34 is needed, found 35"):

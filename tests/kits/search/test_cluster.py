@@ -24,6 +24,7 @@ def cluster(tmp_path_factory):
         yield address, workers
 
 
+@pytest.mark.long
 def test_a_question_has_the_same_answer_there(cluster, asked, tmp_path):
     address, _ = cluster
     varied = '[ask.vary]\n"form.a" = { uniform = ["0 m", "9 m"] }\n"form.b" = { uniform = ["0 kg", "9 kg"] }\n'

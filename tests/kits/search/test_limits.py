@@ -78,6 +78,7 @@ def test_a_known_boundary_is_nearer_than_on_a_grid(value, dimensions, runs, most
     assert mistaken[np.abs(mean) > SURE * sigma].mean() < 0.01
 
 
+@pytest.mark.slow
 def test_a_trial_s_boundary_is_that_of_its_closed_form(asked, tmp_path):
     of_cases = '[map]\nx = "form.a"\ny = "form.c"\n'  # and not of a question's runs
     text = f"{ELLIPSE}[ask.limits]\nruns = 30\n{of_cases}"
@@ -104,6 +105,7 @@ def test_a_trial_s_boundary_is_that_of_its_closed_form(asked, tmp_path):
     assert "Points of the boundary" in page
 
 
+@pytest.mark.long
 @pytest.mark.interop
 def test_an_answer_does_not_depend_on_who_runs_it_nor_on_a_stop(asked, tmp_path):
     campaign = asked("ellipse", "form.y < 1 m", f"{ELLIPSE}[ask.limits]\nruns = 30\n")

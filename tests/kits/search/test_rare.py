@@ -85,6 +85,7 @@ def test_values_that_say_nothing_are_refused():
 SUM = '[design]\nkind = "monte-carlo"\ncount = 10\n[design.vary]\n"form.a" = { normal = ["2 m", "1 m"] }\n"form.b" = { normal = ["-1 kg", "1 kg"] }\n"form.c" = { normal = [0, 2] }\n[[design.correlation]]\nbetween = ["form.a", "form.b"]\ncoefficient = 0.5\n'
 
 
+@pytest.mark.long
 @pytest.mark.interop
 def test_a_trial_s_probability_is_that_of_its_closed_form(asked, tmp_path):
     """The sum over the root of three is normal: mean 1, variance 1 + 1 + 4 + 2 0.5 of it."""
@@ -104,6 +105,7 @@ def test_a_trial_s_probability_is_that_of_its_closed_form(asked, tmp_path):
     assert len(table) == finding.runs == 500 + 450 * (len(found["thresholds"]) - 1)
 
 
+@pytest.mark.long
 @pytest.mark.interop
 def test_a_few_levels_of_a_trial_do_not_depend_on_who_runs_them(asked, tmp_path):
     text = f"{SUM}[ask.rare]\nper_level = 100\nleast = 0.05\n"

@@ -68,6 +68,7 @@ def test_an_output_that_does_not_vary_has_no_indices():
     assert np.isnan(found.total).all()
 
 
+@pytest.mark.slow
 def test_a_trial_s_indices_are_those_of_its_closed_form(asked, tmp_path):
     """Of a sum of normal keys each has its share of the variance: 1, 4 and 1 of 6."""
     varied = '[ask.vary]\n"form.a" = { normal = ["3 m", "1 m"] }\n"form.b" = { normal = ["1 kg", "2 kg"] }\n"form.c" = { normal = [0, 1] }\n'
@@ -87,6 +88,7 @@ def test_a_trial_s_indices_are_those_of_its_closed_form(asked, tmp_path):
     assert (folder / "sensitivity.svg").is_file()
 
 
+@pytest.mark.long
 @pytest.mark.interop
 def test_ishigami_s_function_through_a_trial(asked, tmp_path):
     text = f'figures = ["form.y"]\n{ANGLES}[ask.sensitivity]\nof = ["last form.y"]\nsamples = 256\ntrajectories = 0\n'

@@ -99,6 +99,7 @@ def test_a_failing_point_becomes_the_nearest_that_fails(value, first, distance, 
     assert (point != 0.5).sum() == changed
 
 
+@pytest.mark.slow
 def test_a_trial_of_the_smallest_change_fails_as_it_was_found(asked, tmp_path):
     """The sum of three, over the root of three, is 5 m on a plane."""
     settings = '[ask.worst-case]\nruns = 60\nfirst = "distance"\n'

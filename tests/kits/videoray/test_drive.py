@@ -80,6 +80,7 @@ class Terminal:
         os.close(self.own)
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(sys.platform == "win32", reason="terminals")
 def test_a_pilot_sees_the_vehicle_and_drives_it(tmp_path):
     with LiveRov(f"pty:{tmp_path}/rov", watchdog=30.0) as live:

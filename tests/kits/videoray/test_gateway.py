@@ -75,6 +75,7 @@ def cycles(topside, gateway, seconds):
     return trips
 
 
+@pytest.mark.slow
 def test_the_topside_drives_a_vehicle_over_a_terminal(tmp_path):
     with LiveRov(f"pty:{tmp_path}/rov") as live:
         topside = started(Pro4Topside, manual_limit=0.5, timeout=5.0)

@@ -87,6 +87,7 @@ def survives(pieces):
     assert parser.saved()["buffer"] == ""
 
 
+@pytest.mark.slow
 @given(broken_streams())
 @CASES
 def test_after_the_time_out_the_next_frame_is_received_whatever_was_before(pieces):

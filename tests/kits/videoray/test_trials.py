@@ -109,6 +109,7 @@ def test_the_loop_is_twenty_times_faster_than_real_time(tmp_path):
     assert (ended - begun) / (last - first) > 20
 
 
+@pytest.mark.long
 @pytest.mark.skipif(sys.platform == "win32", reason="pseudo-terminals")
 @pytest.mark.parametrize("seconds", [20, pytest.param(600, marks=pytest.mark.long)])
 def test_a_topside_over_a_terminal_in_real_time(seconds, tmp_path):

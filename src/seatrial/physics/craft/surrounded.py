@@ -7,6 +7,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
+import casadi as ca
 import numpy as np
 
 from ...model.expressions import Model, Vector, bind, compile_model, rk4_between
@@ -45,6 +46,14 @@ class SurroundedPlant(Plant):
         """Return the surroundings that the parameters say, or None. Raises InputError."""
         return None
 
+    def surrounded(self) -> tuple[Model, ca.Function]:
+        """Return the equations among surroundings, compiled, and their step `rk4_between`."""
+        key = tuple(getattr(self, name) for name in self._texts)
+        if key not in self._surrounded_models:
+            model = self._compile_surrounded(dict(zip(self._texts, key, strict=True)))
+            self._surrounded_models[key] = model, rk4_between(model.rhs)
+        return self._surrounded_models[key]
+
     def start(self, t: float) -> None:
         """Start from the start values, among the surroundings there."""
         super().start(t)
@@ -66,7 +75,11 @@ class SurroundedPlant(Plant):
             return
         count = max(1, math.ceil(h / self.max_step - 1e-9))
         self._look_ahead(t, h, count)
-        around = self._shares[self._done].dot(self._evaluated)
+        shares, met = self._shares[self._done], self._evaluated
+        # One product after the other: as C has it, to the bit.
+        around = shares[:, :1] * met[0]
+        for i in range(1, 4):
+            around += shares[:, i : i + 1] * met[i]
         bound = self._bound
         self._x_before[:] = self._x
         self._load()
@@ -129,11 +142,7 @@ class SurroundedPlant(Plant):
 
     def _bind_surrounded(self) -> None:
         assert self._around is not None
-        key = tuple(getattr(self, name) for name in self._texts)
-        if key not in self._surrounded_models:
-            model = self._compile_surrounded(dict(zip(self._texts, key, strict=True)))
-            self._surrounded_models[key] = model, rk4_between(model.rhs)
-        model, rk4 = self._surrounded_models[key]
+        model, rk4 = self.surrounded()
         inputs = len(self._u)
         u = np.zeros((3, inputs + len(self._around)))
         held, advance = bind(self.machine(rk4), [self._x, *u, self._p, self._h], self._x1)

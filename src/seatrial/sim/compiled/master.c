@@ -89,6 +89,9 @@ typedef struct {
     const int64_t *row_places;
     int64_t row_count, row_every, rows_kept;
     double any_quantity;
+    const uint8_t *overridden; /* by signal: whether another value takes its place; NULL: none */
+    const double *overrides;   /* that value, */
+    double *own;               /* and what the signal is by itself */
 } Master;
 
 /* ------------------------------------------------------------------ durations */
@@ -204,8 +207,7 @@ static int write_inputs(Operation *o, const double *signals) {
 }
 
 /* Take over what was read, unless it may be too large or is no number. */
-static int store(const Operation *o, double *signals, double any_quantity) {
-    double *to = signals + o->start;
+static int take_values(const Operation *o, double *to, double any_quantity) {
     if (o->type != REAL) {
         const int *values = o->values;
         for (int64_t i = 0; i < o->count; i++)
@@ -224,6 +226,13 @@ static int store(const Operation *o, double *signals, double any_quantity) {
     return 1;
 }
 
+static int store(const Operation *o, const Master *m) {
+    if (!take_values(o, m->signals + o->start, m->any_quantity)) return 0;
+    for (int64_t i = o->start; m->overridden && i < o->start + o->count; i++)
+        if (m->overridden[i]) m->own[i] = m->signals[i], m->signals[i] = m->overrides[i];
+    return 1;
+}
+
 static int is_accepted(int64_t status) { return status == OK || status == WARNING; }
 
 static int acts(const Operation *o, int64_t steps) {
@@ -237,7 +246,7 @@ static int sweep(Master *m, Operation *loop) {
     for (Operation *o = loop + 1; o <= loop + loop->length; o++) {
         if (!acts(o, m->steps)) continue;
         if (o->kind == STORE) {
-            if (!store(o, m->signals, m->any_quantity)) return EXCESS;
+            if (!store(o, m)) return EXCESS;
             continue;
         }
         if (m->cells) m->cells[1] = o->mark;
@@ -412,7 +421,7 @@ static int finish_step(Master *m) {
                                                 o->values);
             break;
         case STORE:
-            if (!store(o, m->signals, m->any_quantity)) return EXCESS;
+            if (!store(o, m)) return EXCESS;
             continue;
         default: /* ARRIVE */
             m->time_ns = m->begin_ns + m->step_ns;

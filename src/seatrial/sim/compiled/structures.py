@@ -105,4 +105,7 @@ class Master(Structure):
         ("row_every", c_int64),
         ("rows_kept", c_int64),
         ("any_quantity", c_double),
+        ("overridden", c_void_p),
+        ("overrides", c_void_p),
+        ("own", c_void_p),
     ]

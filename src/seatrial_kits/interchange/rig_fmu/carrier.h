@@ -30,6 +30,7 @@ typedef struct {
     fmi2SetStringTYPE *set_string;
     fmi2GetFMUstateTYPE *get_state;
     fmi2SetFMUstateTYPE *set_state;
+    void (*surround)(void *component, int (*met)(double, const double *, double *));
 } Carrier;
 
 #endif
@@ -56,5 +57,10 @@ const Carrier CARRIER = {
     fmi2SetString,
     fmi2GetFMUstate,
     fmi2SetFMUstate,
+#if defined(AROUND) && AROUND /* a plant that can meet weather */
+    seatrial_surround,
+#else
+    NULL,
+#endif
 };
 #endif

@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import re
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import cast
 from xml.etree.ElementTree import Element, SubElement, indent, tostring
@@ -38,6 +39,7 @@ _COMPONENT = """\
 #define CASADI_CODEGEN_PREFIX
 #define CODEGEN_PREFIX {name}_
 #define CASADI_SYMBOL_EXPORT static __attribute__((unused))
+#define seatrial_surround {name}_surround
 {names}
 {includes}
 
@@ -75,23 +77,37 @@ def why_not_native(system: System, in_python: Mapping[str, Sequence[str]]) -> li
     return whys
 
 
+def in_weather(system: System) -> list[str]:
+    """Return which components of a rig meet weather, which an FMU in C cannot evaluate."""
+    return [
+        f"{part.name}: waves, current and wind around it are evaluated in Python"
+        for part in system.parts.values()
+        if getattr(part.instance, "around", None)
+    ]
+
+
 def _is_ours(part: Part) -> bool:
     return bool(getattr(part.instance, "is_native", False)) and not part.fmu.endswith(".fmu")
 
 
-def build_native_rig(
-    system: System,
-    destination: Path,
-    platforms: Sequence[str],
-    compiled: Callable[[Mapping[str, bytes], str], bytes] = library,
-    version: int = 2,
-) -> Path:
-    """Build the FMU of a rig, of which `why_not_native` says nothing, at ``destination``.
+@dataclass(frozen=True)
+class RigInC:
+    """The C of a rig, by file name, and what it is a rig of."""
 
-    ``system`` has its parameters; it is started for that. ``version`` of FMI is 2 or 3. The same
-    rig gives the same bytes.
-    Raises InputError if it cannot start, for connections that only Python can make, and for what
-    the compiler finds; nothing is written then.
+    sources: Mapping[str, bytes]
+    face: Face
+    root: Element
+    """Of its model description."""
+    identifier: str
+    guid: str
+    step_ns: int
+
+
+def rig_in_c(system: System, name: str, version: int = 2) -> RigInC:
+    """Return the C of a rig of which `why_not_native` says nothing, as an FMU called ``name``.
+
+    ``system`` has its parameters; it is started for that. Raises InputError if it cannot start,
+    and for connections that only Python can make.
     """
     master = Master(system)
     try:
@@ -106,7 +122,6 @@ def build_native_rig(
         )
     at_once = master.algorithm.follows_at_once
     face = face_of(system, at_once=at_once)
-    name = destination.stem
     sources, carriers = _components(system)
     tables = RigTables(network, program, begins, face, carriers)
     sources["tables.c"] = tables.text().encode()
@@ -120,12 +135,28 @@ def build_native_rig(
     root = describe_rig(face, name, identifier, title, master.step_ns)
     guid = _identified(root, sources)
     sources["sizes.h"] = tables.sizes(guid, master.step_ns, at_once=at_once).encode()
-    files = {f"sources/{file}": content for file, content in sources.items()}
+    return RigInC(sources, face, root, identifier, guid, master.step_ns)
+
+
+def build_native_rig(
+    system: System,
+    destination: Path,
+    platforms: Sequence[str],
+    compiled: Callable[[Mapping[str, bytes], str], bytes] = library,
+    version: int = 2,
+) -> Path:
+    """Build the FMU of a rig, of which `why_not_native` says nothing, at ``destination``.
+
+    ``version`` of FMI is 2 or 3. The same rig gives the same bytes. Raises InputError as
+    `rig_in_c` does, and for what the compiler finds; nothing is written then.
+    """
+    rig = rig_in_c(system, destination.stem, version)
+    files = {f"sources/{file}": content for file, content in rig.sources.items()}
     for platform in platforms:
         folder = TUPLES[platform] if version == 3 else platform
-        binary = f"binaries/{folder}/{identifier}{TARGETS[platform][1]}"
-        files[binary] = compiled(sources, platform)
-    files |= _described(root, face, [*sources], version)
+        binary = f"binaries/{folder}/{rig.identifier}{TARGETS[platform][1]}"
+        files[binary] = compiled(rig.sources, platform)
+    files |= _described(rig.root, rig.face, [*rig.sources], version)
     destination.parent.mkdir(parents=True, exist_ok=True)
     write_named(destination, zipped(files))
     return destination

@@ -25,8 +25,9 @@ typedef enum { INSTANTIATED, INITIALISING, RUNNING, TERMINATED } Phase;
 typedef enum { CURRENT, TOUCHED, UNSETTLED_STATE } Freshness;
 
 typedef struct { /* all that changes; the components' own states come behind it */
-    double signals[SIGNALS + 1], buffer[BUFFER + 1], relaxations[LOOPS + 1];
-    unsigned char has_previous[OPERATIONS + 1], touched[NODES + 1];
+    double signals[SIGNALS + 1], overrides[SIGNALS + 1], own[SIGNALS + 1], buffer[BUFFER + 1], relaxations[LOOPS + 1];
+    unsigned char overridden[SIGNALS + 1], has_previous[OPERATIONS + 1], touched[NODES + 1];
+    int are_overridden; /* how many signals */
     int64_t steps, now_ns;
     Phase phase;
     Freshness freshness;
@@ -37,6 +38,7 @@ typedef struct {
     State state;
     Master master;
     Operation operations[OPERATIONS + 1];
+    Times times; /* of nobody: nothing is timed */
     fmi2Component components[NODES + 1];
     volatile int32_t said;
     fmi2CallbackLogger log;
@@ -57,11 +59,32 @@ static void say(Rig *self, const char *format, ...) {
 #include "values.inc"
 #include "state.inc"
 
+/* Let another value take the place of an output for all its readers, or end that; between steps. */
+void rig_override(fmi2Component c, fmi2ValueReference output, int begins, double value) {
+    Rig *self = c;
+    State *state = &self->state;
+    const int place = rig_variables[output].place;
+    if (begins) {
+        if (!state->overridden[place]) state->own[place] = state->signals[place];
+        state->signals[place] = state->overrides[place] = value;
+    } else if (state->overridden[place]) {
+        state->signals[place] = state->own[place];
+    }
+    state->are_overridden += !!begins - state->overridden[place];
+    state->overridden[place] = (unsigned char)!!begins;
+    heed_overrides(self);
+    state->touched[rig_variables[output].node] = 1;
+    if (state->freshness == CURRENT) state->freshness = TOUCHED;
+}
+
 /* ------------------------------------------------------------------ life */
+
+fmi2Component rig_component(fmi2Component c, int node) { return ((Rig *)c)->components[node]; }
 
 /* Return to before the initialisation, with the values that the rig gives. */
 static fmi2Status begin_anew(Rig *self) {
     memset(&self->state, 0, sizeof self->state);
+    heed_overrides(self);
     for (int i = 0; i < OPERATIONS; i++)
         self->operations[i].relaxation = 1.0, self->operations[i].has_previous = 0;
     for (int i = 0; i < GIVEN; i++) {
@@ -97,7 +120,6 @@ void fmi2FreeInstance(fmi2Component c) {
 fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String guid, fmi2String resources,
                               const fmi2CallbackFunctions *functions, fmi2Boolean visible,
                               fmi2Boolean logging) {
-    static Times times; /* of nobody: nothing is timed */
     (void)resources, (void)visible, (void)logging; /* errors are always reported */
     Rig *self = calloc(1, sizeof *self);
     if (!self) return NULL;
@@ -112,11 +134,12 @@ fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String guid, f
         fmi2FreeInstance(self);
         return NULL;
     }
-    for (int i = 0; i < OPERATIONS; i++) prepare(self, self->operations + i, rig_rows + i, &times);
+    for (int i = 0; i < OPERATIONS; i++) prepare(self, self->operations + i, rig_rows + i);
     self->master.signals = self->state.signals;
     self->master.step_ns = STEP_NS;
     self->master.said = &self->said;
     self->master.any_quantity = ANY_QUANTITY;
+    self->master.overrides = self->state.overrides, self->master.own = self->state.own;
     if (begin_anew(self) <= fmi2Warning) return self;
     fmi2FreeInstance(self);
     return NULL;

@@ -28,6 +28,7 @@ typedef struct { /* an operation of `master.c`; pointers are places in the table
 typedef struct {
     int type, kind;
     int place;           /* of an output among the signals */
+    int node;            /* of an output: its component */
     int target, targets; /* of the others: where the components' variables are in rig_targets */
 } Variable;
 
@@ -41,6 +42,11 @@ typedef struct {
     double value;
     const char *text;
 } Given;
+
+/* A component of an instance, as its own functions take it. */
+fmi2Component rig_component(fmi2Component rig, int node);
+
+void rig_override(fmi2Component rig, fmi2ValueReference output, int begins, double value);
 
 extern const Node rig_nodes[];
 extern const Row rig_rows[];

@@ -155,8 +155,8 @@ class RigTables:
         variable = self._face.variables[name]
         targets = self._face.targets[name]
         if variable.causality == "output":
-            place, kind = self._network.places[targets[0]], "OUTPUT_VALUE"
-            return f"{{{_TYPES[variable.type]}, {kind}, {place}, 0, 0}}"
+            place, node = self._network.places[targets[0]], self._nodes[targets[0][0]]
+            return f"{{{_TYPES[variable.type]}, OUTPUT_VALUE, {place}, {node}, 0, 0}}"
         kind = "PARAMETER_VALUE"
         if variable.causality == "input":
             continuous = variable.variability == "continuous"
@@ -165,7 +165,7 @@ class RigTables:
         for component, own in targets:
             reference = self._network.nodes[component].part.instance.variables[own].reference
             self._targets.append(f"{{{self._nodes[component]}, {reference}}}")
-        return f"{{{_TYPES[variable.type]}, {kind}, -1, {first}, {len(targets)}}}"
+        return f"{{{_TYPES[variable.type]}, {kind}, -1, -1, {first}, {len(targets)}}}"
 
     def _values_given(self) -> Iterable[str]:
         """Yield the start values that are not the components' own."""

@@ -20,6 +20,7 @@ pytestmark = pytest.mark.interop
 PROFILES = shipped_folder("hil_profiles")
 
 
+@pytest.mark.long
 def test_thrusters_on_a_bus(tmp_path):
     """The trial holds; each frame of the log is what the ports had, to half a step of scaling."""
     result = run_trial(load_trial("hydrone-can"), tmp_path / "run", engine="direct")
@@ -61,6 +62,7 @@ def test_thrusters_on_a_bus(tmp_path):
     assert "StarboardCurrent" in decoded
 
 
+@pytest.mark.long
 def test_servos_on_a_disturbed_bus(tmp_path):
     result = run_trial(load_trial("gloria-can"), tmp_path / "run", engine="direct")
     assert result.status == "complete", result.error

@@ -46,6 +46,7 @@ def done(folder):
     return identify(folder, *asked)
 
 
+@pytest.mark.slow
 def test_it_finds_the_numbers_of_the_file_from_a_record_of_them(done):
     assert done.returncode == 0, done.stderr
     result = json.loads(done.stdout)["result"]

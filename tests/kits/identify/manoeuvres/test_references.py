@@ -40,6 +40,7 @@ def noisy_ship():
     return identified("kvlcc2", [kvlcc2("full_zigzag_20_20", seed=1)], SHIP)
 
 
+@pytest.mark.slow
 def test_derivatives_of_the_tanker_come_back_from_a_zig_zag(ship):
     found, rows = ship
     assert found.accepted
@@ -52,6 +53,7 @@ def test_derivatives_of_the_tanker_come_back_from_a_zig_zag(ship):
     assert shown.rms(shown.after)[0] < 0.05 < 10.0 < shown.rms(shown.before)[0]
 
 
+@pytest.mark.slow
 def test_with_noise_of_gnss_and_compass_at_1_hz_intervals_hold_the_published_values(noisy_ship):
     found, rows = noisy_ship
     shown = [(row, true) for row, true in rows if row.is_identifiable and not row.is_current]
@@ -66,6 +68,7 @@ def test_with_noise_of_gnss_and_compass_at_1_hz_intervals_hold_the_published_val
     assert heading == pytest.approx(np.radians(0.3), rel=0.05)
 
 
+@pytest.mark.slow
 def test_a_turn_shows_the_current():
     _, rows = identified("kvlcc2", [kvlcc2("full_turn_p35_current", 2, last=1200)], SHIP[:1])
     currents = [row.value for row, _ in rows if row.is_current]

@@ -61,6 +61,7 @@ def test_an_antenna_under_water_receives_nothing():
     assert not sea.received("a", 1)
 
 
+@pytest.mark.slow
 def test_loss_is_its_share():
     sea = Sea({"loss": 0.5}, **away(1000.0))
     sea.run(600.0)
@@ -96,6 +97,7 @@ def test_scripted_ships_are_received_where_they_are(traffic):
     assert sea.ships["a"].get("targets") == 3
 
 
+@pytest.mark.slow
 def test_fifty_ships_lose_few_of_their_reports(tmp_path):
     """Who finds the channel busy waits; only those that wait for one burst begin together."""
     ship = '[[ships]]\nmmsi = {}\ntrack = [["0 s", "{} m", "0 m"], ["100 s", "{} m", "0 m"]]\n'

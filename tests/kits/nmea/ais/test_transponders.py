@@ -108,6 +108,7 @@ def between(found):
     return [b - a for a, b in pairwise(times)]
 
 
+@pytest.mark.slow
 def test_reports_come_at_their_intervals_within_a_tenth():
     sea = Sea(a={**SHIP, "velocity_n": [8.0, 0.0, 0.0]}, b={**HOME, "equipment": "B-CS"})
     sea.run(900.0)
@@ -136,6 +137,7 @@ def test_a_turn_shortens_the_interval_until_20_s_after_it():
     assert min(between([each for each in found if each[0] < 100.0])) > 7.9
 
 
+@pytest.mark.slow
 def test_a_lower_speed_counts_after_three_minutes_a_higher_one_at_once():
     sea = Sea(a={**SHIP, "velocity_n": [5.0, 0.0, 0.0]}, b=HOME)
     sea.run(60.0)
@@ -158,6 +160,7 @@ def test_a_silent_transponder_receives_and_is_not_received():
     assert sea.received("b", 1)
 
 
+@pytest.mark.slow
 def test_a_ship_that_is_not_received_any_more_is_no_target():
     sea = Sea(a={**SHIP}, b=HOME)
     sea.run(30.0)

@@ -66,6 +66,7 @@ every = "20 ms"
 """
 
 
+@pytest.mark.long
 def test_what_plotters_read_and_send(tmp_path):
     feed = find_file("harness/rigs", "autopilots/nmea0183").read_text("utf-8")
     feed = feed.replace("[components]", '[components]\nplotter = { fmu = "plotter.py:Plotter" }')

@@ -317,6 +317,7 @@ def test_a_node_that_loses_its_address_in_a_fast_packet_goes_on_from_another():
     assert not [t for t in silent if moved < t < moved + 250_000_000]
 
 
+@pytest.mark.slow
 def test_five_percent_of_loss_gives_no_wrong_value():
     settings = {
         "sends": "127250 129029 127237 126992",

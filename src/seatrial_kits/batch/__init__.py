@@ -1,0 +1,1 @@
+"""Many copies of one system in compiled code."""

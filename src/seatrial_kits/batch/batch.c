@@ -1,0 +1,242 @@
+/* Copies of a rig in C: one program, as many memories, threads that share the copies.
+
+   A copy that fails keeps its message and is passed over until it is started again. Rows of values
+   are one copy's, in the order of the references. */
+
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#if !defined(_WIN32)
+#include <pthread.h>
+#endif
+
+#include "fmi2Functions.h"
+#include "rig.h"
+
+#if defined(_WIN32)
+#define EXPORTED __declspec(dllexport)
+#else
+#define EXPORTED __attribute__((visibility("default")))
+#endif
+
+typedef struct {
+    fmi2Component rig;
+    fmi2CallbackFunctions functions;
+    int64_t begin_ns, steps;
+    int failed, started;
+    char message[1024];
+} Copy;
+
+typedef struct {
+    int64_t count;
+    Copy *copies;
+} Batch;
+
+typedef struct { /* what one thread does, for copies from `first`, before `last` */
+    Batch *batch;
+    int64_t first, last, steps;
+} Work;
+
+/* ------------------------------------------------------------------ copies */
+
+static void log_message(fmi2ComponentEnvironment environment, fmi2String name, fmi2Status status,
+                        fmi2String category, fmi2String format, ...) {
+    Copy *copy = environment;
+    va_list arguments;
+    (void)name, (void)category;
+    if (status <= fmi2Warning || copy->message[0]) return; /* the first error says why */
+    va_start(arguments, format);
+    vsnprintf(copy->message, sizeof copy->message, format, arguments);
+    va_end(arguments);
+}
+
+static void check(Copy *copy, fmi2Status status) {
+    if (status <= fmi2Warning) return;
+    copy->failed = 1;
+    if (!copy->message[0]) snprintf(copy->message, sizeof copy->message, "a component cannot go on");
+}
+
+EXPORTED void batch_free(Batch *batch) {
+    if (!batch) return;
+    for (int64_t i = 0; i < batch->count; i++) fmi2FreeInstance(batch->copies[i].rig);
+    free(batch->copies);
+    free(batch);
+}
+
+EXPORTED Batch *batch_new(int64_t count) {
+    Batch *batch = calloc(1, sizeof *batch);
+    if (!batch) return NULL;
+    batch->copies = calloc((size_t)count, sizeof *batch->copies);
+    if (batch->copies)
+        for (; batch->count < count; batch->count++) {
+            Copy *copy = batch->copies + batch->count;
+            const fmi2CallbackFunctions functions = {log_message, NULL, NULL, NULL, copy};
+            memcpy(&copy->functions, &functions, sizeof functions); /* its fields are constant */
+            copy->rig = fmi2Instantiate("", fmi2CoSimulation, RIG_GUID, "", &copy->functions, 0, 0);
+            if (!copy->rig) break;
+        }
+    if (batch->count == count) return batch;
+    batch_free(batch);
+    return NULL;
+}
+
+/* ------------------------------------------------------------------ values */
+
+static fmi2Status set_one(Copy *copy, uint32_t reference, double value) {
+    const fmi2Integer whole = (fmi2Integer)value;
+    switch (rig_variables[reference].type) {
+    case REAL_TYPE:
+        return fmi2SetReal(copy->rig, &reference, 1, &value);
+    case INTEGER_TYPE:
+        return fmi2SetInteger(copy->rig, &reference, 1, &whole);
+    default:
+        return fmi2SetBoolean(copy->rig, &reference, 1, &whole);
+    }
+}
+
+static fmi2Status get_one(Copy *copy, uint32_t reference, double *value) {
+    fmi2Integer whole = 0;
+    fmi2Status status = fmi2OK;
+    switch (rig_variables[reference].type) {
+    case REAL_TYPE:
+        return fmi2GetReal(copy->rig, &reference, 1, value);
+    case INTEGER_TYPE:
+        status = fmi2GetInteger(copy->rig, &reference, 1, &whole);
+        break;
+    default:
+        status = fmi2GetBoolean(copy->rig, &reference, 1, &whole);
+    }
+    *value = (double)whole;
+    return status;
+}
+
+static void set_row(Copy *copy, const uint32_t *references, int64_t count, const double *row) {
+    for (int64_t k = 0; k < count && !copy->failed; k++)
+        check(copy, set_one(copy, references[k], row[k]));
+}
+
+/* Let a component of a copy meet other surroundings from its next start on; NULL: nothing. */
+EXPORTED void batch_surround(Batch *batch, int64_t i, int64_t node,
+                             int (*met)(double, const double *, double *)) {
+    if (rig_nodes[node].carrier->surround)
+        rig_nodes[node].carrier->surround(rig_component(batch->copies[i].rig, (int)node), met);
+}
+
+EXPORTED void batch_set(Batch *batch, const uint8_t *mask, const uint32_t *references,
+                        int64_t count, const double *values) {
+    for (int64_t i = 0; i < batch->count; i++)
+        if (mask[i]) set_row(batch->copies + i, references, count, values + i * count);
+}
+
+/* Override outputs, each copy of the mask with its row of values; NULL: release them. */
+EXPORTED void batch_override(Batch *batch, const uint8_t *mask, const uint32_t *references,
+                             int64_t count, const double *values) {
+    for (int64_t i = 0; i < batch->count; i++)
+        for (int64_t k = 0; k < count && mask[i]; k++)
+            rig_override(batch->copies[i].rig, references[k], values != NULL,
+                         values ? values[i * count + k] : 0.0);
+}
+
+EXPORTED void batch_get(Batch *batch, const uint32_t *references, int64_t count, double *values) {
+    int all_real = 1;
+    for (int64_t k = 0; k < count; k++) all_real &= rig_variables[references[k]].type == REAL_TYPE;
+    for (int64_t i = 0; i < batch->count; i++) {
+        Copy *copy = batch->copies + i;
+        double *row = values + i * count;
+        if (all_real) { /* of a copy that has failed: what it had */
+            check(copy, fmi2GetReal(copy->rig, references, (size_t)count, row));
+            continue;
+        }
+        for (int64_t k = 0; k < count; k++) check(copy, get_one(copy, references[k], row + k));
+    }
+}
+
+/* ------------------------------------------------------------------ life */
+
+/* Start copies anew, each with its row of values. */
+EXPORTED void batch_start(Batch *batch, const uint8_t *mask, const uint32_t *references,
+                          int64_t count, const double *values) {
+    for (int64_t i = 0; i < batch->count; i++) {
+        Copy *copy = batch->copies + i;
+        if (!mask[i]) continue;
+        copy->failed = 0, copy->message[0] = '\0', copy->steps = 0;
+        if (copy->started) check(copy, fmi2Reset(copy->rig));
+        copy->started = 1;
+        set_row(copy, references, count, values + i * count);
+        if (!copy->failed) check(copy, fmi2SetupExperiment(copy->rig, 0, 0.0, 0.0, 0, 0.0));
+        if (!copy->failed) check(copy, fmi2EnterInitializationMode(copy->rig));
+        if (!copy->failed) check(copy, fmi2ExitInitializationMode(copy->rig));
+    }
+}
+
+static void *worked(void *given) {
+    const Work *work = given;
+    const double h = (double)(work->steps * STEP_NS) / 1e9;
+    for (int64_t i = work->first; i < work->last; i++) {
+        Copy *copy = work->batch->copies + i;
+        if (copy->failed) continue;
+        check(copy, fmi2DoStep(copy->rig, (double)(copy->steps * STEP_NS) / 1e9, h, 1));
+        copy->steps += work->steps;
+    }
+    return NULL;
+}
+
+EXPORTED void batch_step(Batch *batch, int64_t steps, int64_t threads) {
+    Work works[64];
+#if defined(_WIN32)
+    threads = 1;
+#else
+    pthread_t running[64];
+    int begun[64] = {0};
+#endif
+    if (threads > 64) threads = 64;
+    for (int64_t k = 0; k < threads; k++)
+        works[k] = (Work){batch, batch->count * k / threads, batch->count * (k + 1) / threads, steps};
+#if !defined(_WIN32)
+    for (int64_t k = 1; k < threads; k++)
+        begun[k] = pthread_create(running + k, NULL, worked, works + k) == 0;
+#endif
+    worked(works);
+#if !defined(_WIN32)
+    for (int64_t k = 1; k < threads; k++) {
+        if (begun[k]) pthread_join(running[k], NULL);
+        else worked(works + k);
+    }
+#endif
+}
+
+EXPORTED const char *batch_message(const Batch *batch, int64_t i) {
+    return batch->copies[i].failed ? batch->copies[i].message : NULL;
+}
+
+EXPORTED void batch_times(const Batch *batch, int64_t *steps, uint8_t *failed) {
+    for (int64_t i = 0; i < batch->count; i++) {
+        steps[i] = batch->copies[i].steps;
+        failed[i] = (uint8_t)batch->copies[i].failed;
+    }
+}
+
+/* ------------------------------------------------------------------ states */
+
+EXPORTED void batch_free_states(Batch *batch, void **states) {
+    for (int64_t i = 0; i < batch->count; i++)
+        if (states[i]) fmi2FreeFMUstate(batch->copies[i].rig, states + i);
+}
+
+EXPORTED int batch_save(Batch *batch, void **states) {
+    for (int64_t i = 0; i < batch->count; i++)
+        if (fmi2GetFMUstate(batch->copies[i].rig, states + i) > fmi2Warning) return 0;
+    return 1;
+}
+
+/* Copy i goes on from the state of copy from[i], after so many steps; negative: it goes on as it is. */
+EXPORTED void batch_restore(Batch *batch, void **states, const int64_t *from, const int64_t *steps) {
+    for (int64_t i = 0; i < batch->count; i++) {
+        Copy *copy = batch->copies + i;
+        if (from[i] < 0) continue;
+        copy->failed = 0, copy->message[0] = '\0', copy->started = 1;
+        check(copy, fmi2SetFMUstate(copy->rig, states[from[i]]));
+        copy->steps = steps[from[i]];
+    }
+}

@@ -1,0 +1,313 @@
+"""Copies of a rig in compiled code, with arrays of a row per copy."""
+
+from __future__ import annotations
+
+import ctypes
+import weakref
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from types import TracebackType
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from seatrial.api.signal import Signal
+from seatrial.api.simulation import assembled, described
+from seatrial.errors import InputError, SimulationError
+from seatrial_kits.native.surroundings import NOTHING, Met
+
+from .program import program_of
+from .settings import Settings, give_built_in
+
+Floats = NDArray[np.float64]
+MOST_THREADS = 64
+
+
+class BatchState:
+    """The states of all copies at one moment; `Batch.save` makes one."""
+
+    def __init__(self, batch: Batch, states: Any, steps: NDArray[np.int64]) -> None:
+        self.batch, self.states, self.steps = batch, states, steps
+
+
+class Batch:
+    """``count`` copies of a rig, all in compiled code, that the caller steps together.
+
+    ``rig``, ``set``, ``variant``, ``step`` and ``choices`` are those of `seatrial.Simulation`; a
+    value of ``set`` may also be an array with a row for each copy. ``seed`` is the first copy's,
+    the next has the next one, or a sequence with a seed for each. ``threads`` share the copies.
+
+    Copy i has the bytes of a `Simulation` with ``engine="native"``, its seed and its settings, on
+    any number of threads. A copy that fails keeps its values and its message (`failures`) and is
+    passed over until it is started anew; the others go on.
+
+    Raises InputError for bad input, for a rig that cannot start with it, for one with components
+    that have no C, naming them, and without a compiler.
+    """
+
+    def __init__(
+        self,
+        rig: str | Path,
+        count: int,
+        *,
+        set: Mapping[str, Any] | None = None,
+        seed: int | Sequence[int] = 1,
+        variant: str | None = None,
+        step: float | str | None = None,
+        choices: Mapping[str, str] | None = None,
+        threads: int = 1,
+    ) -> None:
+        if count < 1:
+            raise InputError(f"Batch: the count is {count}, at least 1 is needed")
+        if not 1 <= threads <= MOST_THREADS:
+            raise InputError(f"Batch: threads is {threads}, allowed 1 to {MOST_THREADS}")
+        self.count, self.threads = count, threads
+        self.seeds = self._seeds(seed)
+        """Of each copy."""
+        self.system = assembled(rig, variant=variant, engine="native", step=step, choices=choices)
+        try:
+            of_copies = give_built_in(self.system, set or {})
+            program = program_of(self.system)
+            self._settings = Settings(self.system, program.references, count)
+            self._settings.change(of_copies, "set")
+        except BaseException:
+            self.system.discard()
+            raise
+        self._nodes = list(self.system.parts)
+        self.step_size = program.step_ns / 1e9
+        """Communication step, s."""
+        self._library = program.library
+        self._batch = self._library.batch_new(count)
+        if not self._batch:
+            self.system.discard()
+            raise InputError(f"Batch: there is no memory for {count} copies")
+        self._free = weakref.finalize(self, _freed, self._library, self._batch, self.system)
+        self._met: dict[str, list[Met | None]] = {}
+        """What surrounds each plant that can meet weather, in each copy; C calls it."""
+        self._start(np.ones(count, dtype=bool))
+
+    # ------------------------------------------------------------------ time
+
+    @property
+    def time(self) -> Floats:
+        """Simulated time of each copy, s, shape (count,)."""
+        return np.asarray(self._times()[0] * self.step_size, dtype=np.float64)
+
+    def step(self, count: int = 1) -> None:
+        """Let every copy that has not failed take ``count`` communication steps."""
+        self._refuse_closed()
+        if count < 0:
+            raise InputError(f"step: the count is {count}, it cannot be negative")
+        self._library.batch_step(self._batch, count, min(self.threads, self.count))
+
+    @property
+    def failures(self) -> dict[int, str]:
+        """By number of each copy that cannot go on: why."""
+        failed = np.flatnonzero(self._times()[1])
+        message = self._library.batch_message
+        return {int(i): message(self._batch, int(i)).decode() for i in failed}
+
+    # ------------------------------------------------------------------ values
+
+    @property
+    def signals(self) -> dict[str, Signal]:
+        """All outputs by name, in the order of the rig."""
+        return described(self.system, "output")
+
+    @property
+    def inputs(self) -> dict[str, Signal]:
+        """All inputs by name."""
+        return described(self.system, "input")
+
+    @property
+    def parameters(self) -> dict[str, Signal]:
+        """All parameters by name."""
+        return described(self.system, "parameter")
+
+    def get(self, *names: str) -> Floats:
+        """Return present values: outputs, inputs that nothing feeds, parameters, in their units.
+
+        Shape (count,) of one scalar; (count, n) of a port with n elements, or of several names,
+        side by side. Numbers alone: true is 1.0. Raises InputError.
+        """
+        self._refuse_closed()
+        references = self._settings.read(names)
+        values = np.empty((self.count, len(references)))
+        self._library.batch_get(self._batch, _at(references), len(references), _at(values))
+        is_scalar = len(names) == 1 and self._settings.is_scalar(names[0])
+        return values[:, 0] if is_scalar else values
+
+    def set(self, name: str, value: ArrayLike | str, mask: ArrayLike | None = None) -> None:
+        """Set an input that nothing feeds, or a tunable parameter, from now on.
+
+        ``value`` is one for all copies, as `Simulation.set` takes it, or an array with a row for
+        each; ``mask`` (count,) says of which copies. Raises InputError.
+        """
+        self._refuse_closed()
+        chosen = self._mask(mask)
+        references, values = self._settings.running(name, value)
+        self._library.batch_set(
+            self._batch, _at(chosen), _at(references), len(references), _at(values)
+        )
+
+    def override(self, name: str, value: ArrayLike | str, mask: ArrayLike | None = None) -> None:
+        """Replace an output for all its readers, from now on, until `release` or a start.
+
+        ``value`` and ``mask`` as for `set`. Raises InputError.
+        """
+        self._refuse_closed()
+        chosen = self._mask(mask)
+        references, values = self._settings.overriding(name, value)
+        self._library.batch_override(
+            self._batch, _at(chosen), _at(references), len(references), _at(values)
+        )
+
+    def release(self, name: str, mask: ArrayLike | None = None) -> None:
+        """End an override: the output has its own value again. Raises InputError."""
+        self._refuse_closed()
+        chosen = self._mask(mask)
+        references, _ = self._settings.overriding(name, None)
+        self._library.batch_override(
+            self._batch, _at(chosen), _at(references), len(references), None
+        )
+
+    # ------------------------------------------------------------------ life
+
+    def reset(
+        self,
+        mask: ArrayLike | None = None,
+        *,
+        set: Mapping[str, Any] | None = None,
+        seed: int | Sequence[int] | None = None,
+    ) -> None:
+        """Start copies anew, at time 0, those of ``mask`` (count,) or all.
+
+        ``set`` changes parameters and start values from now on, fixed ones too: one value for all
+        copies, or an array with a row for each. ``seed`` replaces the seeds of these copies.
+        Raises InputError, naming what is built into the program: texts and structure.
+        """
+        self._refuse_closed()
+        chosen = self._mask(mask)
+        seeds = self.seeds if seed is None else self._seeds(seed)
+        self._settings.change(set or {}, "reset", chosen)
+        self.seeds = np.where(chosen, seeds, self.seeds)
+        self._start(chosen)
+
+    def save(self) -> BatchState:
+        """Return the states of all copies. Raises SimulationError without memory for them."""
+        self._refuse_closed()
+        states = (ctypes.c_void_p * self.count)()
+        if not self._library.batch_save(self._batch, states):
+            raise SimulationError(f"save: there is no memory for {self.count} states")
+        saved = BatchState(self, states, self._times()[0])
+        weakref.finalize(saved, self._release, states).atexit = False
+        return saved
+
+    def restore(
+        self, state: BatchState, mask: ArrayLike | None = None, *, source: ArrayLike | None = None
+    ) -> None:
+        """Let the copies of ``mask`` (count,), or all, go on from a state that this batch saved.
+
+        ``source`` (count,) says from which copy's state each goes on, if not from its own.
+        Settings of a copy come with its state. Raises InputError.
+        """
+        self._refuse_closed()
+        if state.batch is not self:
+            raise InputError("restore: this is the state of another batch")
+        chosen, numbers = self._mask(mask), np.arange(self.count)
+        if source is not None:
+            numbers = np.asarray(source)
+            is_whole = numbers.shape == (self.count,) and numbers.dtype.kind in "iu"
+            if not is_whole or numbers.min() < 0 or numbers.max() >= self.count:
+                raise InputError(
+                    f"restore: source has shape {numbers.shape} of {numbers.dtype}; {self.count} "
+                    f"numbers of copies, 0 to {self.count - 1}, are needed"
+                )
+        origin = np.where(chosen, numbers, -1).astype(np.int64)
+        self._library.batch_restore(self._batch, state.states, _at(origin), _at(state.steps))
+
+    def close(self) -> None:
+        """Release the copies; more than once does nothing."""
+        self._free()
+
+    def __enter__(self) -> Batch:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self.close()
+
+    def __len__(self) -> int:
+        return self.count
+
+    def __repr__(self) -> str:
+        closed = "" if self._free.alive else ", closed"
+        return f"<Batch of {self.count} x {self.system.rig.read_from.name}{closed}>"
+
+    # ------------------------------------------------------------------ inside
+
+    def _start(self, chosen: NDArray[np.bool_]) -> None:
+        references, values = self._settings.rows(self.seeds)
+        for name, met in self._settings.surroundings(chosen).items():
+            of_all = self._met.setdefault(name, [None] * self.count)
+            node = self._nodes.index(name)
+            for copy in np.flatnonzero(chosen).tolist():
+                of_all[copy] = met[copy]
+                self._library.batch_surround(self._batch, copy, node, met[copy] or NOTHING)
+        self._library.batch_start(
+            self._batch, _at(chosen), _at(references), len(references), _at(values)
+        )
+        for number, why in self.failures.items():
+            if chosen[number]:
+                raise InputError(
+                    f"{self.system.rig.read_from.path}: copy {number} cannot start: {why}"
+                )
+
+    def _seeds(self, seed: int | Sequence[int]) -> NDArray[np.int64]:
+        given = np.asarray(seed)
+        if given.dtype.kind not in "iu" or given.shape not in ((), (self.count,)):
+            raise InputError(
+                f"seed: found shape {given.shape} of {given.dtype}; one whole number, or "
+                f"{self.count}, are needed"
+            )
+        return given + np.arange(self.count) if given.shape == () else given.astype(np.int64)
+
+    def _mask(self, mask: ArrayLike | None) -> NDArray[np.bool_]:
+        if mask is None:
+            return np.ones(self.count, dtype=bool)
+        chosen = np.ascontiguousarray(mask)
+        if chosen.dtype != bool or chosen.shape != (self.count,):
+            raise InputError(
+                f"mask: found shape {chosen.shape} of {chosen.dtype}; {self.count} truths are "
+                "needed"
+            )
+        return chosen
+
+    def _times(self) -> tuple[NDArray[np.int64], NDArray[np.bool_]]:
+        self._refuse_closed()
+        steps, failed = np.empty(self.count, dtype=np.int64), np.empty(self.count, dtype=bool)
+        self._library.batch_times(self._batch, _at(steps), _at(failed))
+        return steps, failed
+
+    def _release(self, states: Any) -> None:
+        if self._free.alive:
+            self._library.batch_free_states(self._batch, states)
+
+    def _refuse_closed(self) -> None:
+        if not self._free.alive:
+            raise InputError("this batch is closed")
+
+
+def _at(array: NDArray[Any]) -> int:
+    """Return where an array without gaps has its numbers."""
+    return int(array.ctypes.data)
+
+
+def _freed(library: ctypes.CDLL, batch: int, system: Any) -> None:
+    library.batch_free(batch)
+    system.free()

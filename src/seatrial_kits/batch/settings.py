@@ -1,0 +1,256 @@
+"""What a caller sets of copies, as rows of values by reference."""
+
+from __future__ import annotations
+
+import zlib
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from seatrial.api.written import as_written
+from seatrial.errors import InputError, unknown
+from seatrial.fmi.components.source import ComponentSource, find_source
+from seatrial.fmi.instance import Variable
+from seatrial.system.part import Part
+from seatrial.system.paths import joined
+from seatrial.system.system import System
+from seatrial.system.values import check_limits, from_written, port_names, port_scalars
+from seatrial_kits.native.surroundings import Met, is_surrounded, surroundings_of
+from seatrial_kits.native.tables import is_built_in
+
+Floats = NDArray[np.float64]
+_SEED = "seed"
+
+
+class Settings:
+    """Values that copies of a system start with, by ``component.port``, a row for each copy.
+
+    They begin as the rig gives them; what is set at a start stays for the starts that follow.
+    """
+
+    def __init__(self, system: System, references: Mapping[str, int], count: int) -> None:
+        self._system, self._references, self._count = system, references, count
+        self._sources = {part.name: _source(system, part) for part in system.parts.values()}
+        self._rows: dict[str, Floats] = {}
+        """What was set, by scalar, each (count,)."""
+        self._met: dict[tuple[Any, ...], Met | None] = {}
+        self._seeded: tuple[NDArray[np.int64], dict[str, Floats]] = (np.empty(0, np.int64), {})
+
+    # ------------------------------------------------------------------ names
+
+    def is_scalar(self, name: str) -> bool:
+        """Say if a name is that of one scalar."""
+        return name in self._references
+
+    def read(self, names: Sequence[str]) -> NDArray[np.uint32]:
+        """Return the references of outputs, open inputs and parameters. Raises InputError."""
+        found = [name for given in names for name, _ in self._scalars(given, "get")]
+        return np.array([self._references[name] for name in found], dtype=np.uint32)
+
+    def _scalars(self, name: str, call: str) -> list[tuple[str, Variable]]:
+        part, port = self._system.located(name, call)[0]
+        variables = part.instance.variables
+        scalars = port_scalars(variables, port)
+        if not scalars:
+            raise InputError(f"{part.name}: {unknown('port', port, port_names(variables))}")
+        named = [(f"{part.name}.{scalar.name}", scalar) for scalar in scalars]
+        for whole, scalar in named:
+            if scalar.type in (str, bytes):
+                raise InputError(f"{call}: {whole} is a text, and a batch has numbers alone")
+            if whole not in self._references:
+                feeder = self._system.feeders(part.name).get(scalar.name, "another component")
+                raise InputError(f"{call}: {whole} is fed by {feeder}, and nothing else sets it")
+        return named
+
+    # ------------------------------------------------------------------ values
+
+    def given(self, name: str, value: Any, call: str) -> dict[str, Floats]:
+        """Return what a caller gives of a port, by scalar, each (count,). Raises InputError."""
+        scalars = self._scalars(name, call)
+        part = self._system.parts[scalars[0][0].removesuffix(f".{scalars[0][1].name}")]
+        for whole, scalar in scalars:
+            if scalar.causality == "output" and call != "override":
+                raise InputError(f"{call}: {whole} is an output; it can be overridden")
+        rows: NDArray[Any] = np.array(0.0 if isinstance(value, str) else value)
+        if rows.dtype.kind in "fiub" and rows.ndim and rows.shape[0] == self._count:
+            wanted = (self._count,) if len(scalars) == 1 else (self._count, len(scalars))
+            if rows.shape == wanted:
+                return self._checked(scalars, rows.reshape(self._count, -1), f"{call}: {name}")
+        if rows.ndim > 1 or (rows.ndim == 1 and rows.shape != (len(scalars),)):
+            raise InputError(
+                f"{call}: {name} has shape {rows.shape}; one value for all copies has "
+                f"{len(scalars)} element{'s' * (len(scalars) != 1)}, a row for each copy "
+                f"({self._count}, {len(scalars)})"
+            )
+        presets = part.presets.get(self._port_of(part, scalars), {})
+        found = from_written(as_written(value), [s for _, s in scalars], presets, f"{call}: {name}")
+        return {
+            whole: np.full(self._count, float(found[scalar.name].value))
+            for whole, scalar in scalars
+        }
+
+    def _port_of(self, part: Part, scalars: Sequence[tuple[str, Variable]]) -> str:
+        return part.instance.variables.port_of(scalars[0][1].name)
+
+    def _checked(
+        self, scalars: Sequence[tuple[str, Variable]], rows: NDArray[Any], origin: str
+    ) -> dict[str, Floats]:
+        numbers = rows.astype(float)
+        for column, (whole, scalar) in enumerate(scalars):
+            for copy in np.flatnonzero(~np.isfinite(numbers[:, column])):
+                raise InputError(f"{origin}: copy {copy} gets {numbers[copy, column]} for {whole}")
+            for furthest in {int(numbers[:, column].argmin()), int(numbers[:, column].argmax())}:
+                number = float(numbers[furthest, column])
+                check_limits(scalar, number, f"{origin}: copy {furthest}")
+        return {whole: numbers[:, i].copy() for i, (whole, _) in enumerate(scalars)}
+
+    def running(self, name: str, value: Any) -> tuple[NDArray[np.uint32], Floats]:
+        """Return references and rows of what is set in a run. Raises InputError."""
+        given = self.given(name, value, "set")
+        for whole, scalar in self._scalars(name, "set"):
+            if scalar.causality == "parameter" and scalar.variability != "tunable":
+                raise InputError(f"set: {whole} is fixed once a copy has started; reset sets it")
+        return self._stacked(given)
+
+    def overriding(self, name: str, value: Any) -> tuple[NDArray[np.uint32], Floats]:
+        """Return references and rows of outputs that are overridden; of None references alone.
+
+        Raises InputError.
+        """
+        for whole, scalar in self._scalars(name, "override"):
+            if scalar.causality != "output":
+                raise InputError(f"override: {whole} is no output; set it, or reset with it")
+        if value is None:
+            return self.read([name]), np.empty((self._count, 0))
+        return self._stacked(self.given(name, value, "override"))
+
+    # ------------------------------------------------------------------ starts
+
+    def change(
+        self, settings: Mapping[str, Any], call: str, mask: NDArray[np.bool_] | None = None
+    ) -> None:
+        """Take over what copies, those of ``mask``, start with from now on.
+
+        Raises InputError, and changes nothing then.
+        """
+        changed: dict[str, Floats] = {}
+        for name, value in settings.items():
+            given = self.given(name, value, call)
+            for whole, scalar in self._scalars(name, call):
+                if _is_built_in(self._system, whole, scalar):
+                    raise InputError(
+                        f"{call}: {whole} is built into the program; give it to Batch's set"
+                    )
+            changed |= given
+        for whole, rows in changed.items():
+            before = self._rows.get(whole, np.full(self._count, self._as_given(whole)))
+            self._rows[whole] = rows if mask is None else np.where(mask, rows, before)
+
+    def _as_given(self, whole: str) -> float:
+        """Return what the rig gives a scalar."""
+        part, name = self._system.located(whole, "set")[0]
+        given = part.given.get(name)
+        value = part.instance.variables[name].start if given is None else given.value
+        return float(value)  # type: ignore[arg-type]
+
+    def rows(self, seeds: NDArray[np.int64]) -> tuple[NDArray[np.uint32], Floats]:
+        """Return references and rows of values that copies with these seeds start with."""
+        if not np.array_equal(seeds, self._seeded[0]):
+            self._seeded = seeds.copy(), self._of_seeds(seeds)
+        return self._stacked(self._seeded[1] | self._rows)
+
+    def surroundings(self, mask: NDArray[np.bool_]) -> dict[str, list[Met | None]]:
+        """Return what surrounds each plant that can meet weather, in each copy of the mask.
+
+        Raises InputError for a sea, a current or a wind that cannot be.
+        """
+        found: dict[str, list[Met | None]] = {}
+        for name, source in self._sources.items():
+            if source is None:
+                continue
+            part = self._system.parts[name]
+            values = {own: given.value for own, given in part.given.items()}
+            changed = {
+                whole.removeprefix(f"{name}."): rows
+                for whole, rows in self._rows.items()
+                if whole.startswith(f"{name}.")
+                and whole.removeprefix(f"{name}.") in part.instance.variables
+            }
+            found[name] = [
+                self._meets(name, source, {**values, **{k: v[i] for k, v in changed.items()}})
+                if mask[i]
+                else None
+                for i in range(self._count)
+            ]
+        return found
+
+    def _meets(self, name: str, source: ComponentSource, values: dict[str, Any]) -> Met | None:
+        key = name, *sorted(values.items(), key=lambda item: item[0])
+        if key not in self._met:
+            if len(self._met) > 4 * self._count:
+                self._met.clear()  # those in use are kept by the copies
+            self._met[key] = surroundings_of(source, values)
+        return self._met[key]
+
+    def _of_seeds(self, seeds: NDArray[np.int64]) -> dict[str, Floats]:
+        """Return the seeds of components, as `give_parameters` derives them from a system's."""
+        found: dict[str, Floats] = {}
+        for part in self._system.parts.values():
+            for name in part.instance.variables.of_role(_SEED):
+                given = part.given.get(name)
+                if given is not None and not given.origin.startswith("derived from seed"):
+                    continue  # somebody wrote it
+                inside = name.rpartition(".")[0]
+                owner = joined(part.name, inside) if inside else part.name
+                own = [float(zlib.crc32(f"{seed}/{owner}".encode())) for seed in seeds.tolist()]
+                found[f"{part.name}.{name}"] = np.array(own)
+        return found
+
+    def _stacked(self, given: Mapping[str, Floats]) -> tuple[NDArray[np.uint32], Floats]:
+        references = np.array([self._references[name] for name in given], dtype=np.uint32)
+        rows = np.empty((self._count, len(given)))
+        for column, values in enumerate(given.values()):
+            rows[:, column] = values
+        return references, rows
+
+
+def give_built_in(system: System, settings: Mapping[str, Any]) -> dict[str, Any]:
+    """Give a system what is built into its program, and return what its copies can each have.
+
+    Raises InputError for what does not fit.
+    """
+    rest: dict[str, Any] = {}
+    for name, value in settings.items():
+        part, port = system.located(name, "set")[0]
+        scalars = port_scalars(part.instance.variables, port)
+        if scalars and _is_built_in(system, f"{part.name}.{scalars[0].name}", scalars[0]):
+            system.set(name, as_written(value), "set")
+        else:
+            rest[name] = value
+    return rest
+
+
+def _is_built_in(system: System, whole: str, scalar: Variable) -> bool:
+    part = system.parts[whole.removesuffix(f".{scalar.name}")]
+    source = None if part.is_sum else find_source(part.fmu, _folder(system, part))
+    if not isinstance(source, ComponentSource):
+        return False
+    cls = source.component_class()
+    return is_built_in(cls, cls.scalar_by_name[scalar.name].port, surrounded=is_surrounded(source))
+
+
+def _folder(system: System, part: Part) -> Path:
+    return system.rig.components[part.name].scope.folder
+
+
+def _source(system: System, part: Part) -> ComponentSource | None:
+    """Return the source of a plant that can meet weather, None of any other component."""
+    if part.is_sum:
+        return None
+    source = find_source(part.fmu, _folder(system, part))
+    if isinstance(source, ComponentSource) and is_surrounded(source):
+        return source
+    return None

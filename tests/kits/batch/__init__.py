@@ -1,0 +1,1 @@
+"""Copies of systems in compiled code."""
