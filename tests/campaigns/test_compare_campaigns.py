@@ -166,4 +166,6 @@ def test_a_table_and_folders_of_the_same_cases_are_pairs(written, tmp_path):
         "robustness of few": 0.0, "worst of few": 0.0
     }  # fmt: skip
     page = write_comparison_page(found, tmp_path / "page.html")
-    assert "case.number 4 m" in page.read_text("utf-8")
+    assert 'case.number 4 m: <a href="one/02-t-number-4-m/">one</a>' in page.read_text("utf-8")
+    elsewhere = write_comparison_page(found, tmp_path / "two/page.html")
+    assert '<a href="../one/02-t-number-4-m/">' in elsewhere.read_text("utf-8")
