@@ -8,7 +8,6 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 
-
 import seatrial
 
 _RIG = "landing"
@@ -73,10 +72,11 @@ def main() -> None:
     single, (loop, sensors) = _single(), _environment()
     print(f"single compiled run: {single * 1e6:.2f} us a step")
     print(f"environment over Simulation: {loop * 1e6:.0f} us for {_ENVIRONMENT} steps")
-    everything = ["vehicle.hull.position", "vehicle.hull.attitude", "vehicle.hull.velocity", *sensors]
+    hull = [f"vehicle.hull.{name}" for name in ("position", "attitude", "velocity")]
     for count in (1, 64, 256, 1024):
-        own, _ = _batch(count, everything, 1)
-        print(f"{count:5d} copies, step(1), all observed: {own * 1e6:.2f} us, {own / single:.2f} single")
+        own, _ = _batch(count, [*hull, *sensors], 1)
+        ratio = own / single
+        print(f"{count:5d} copies, step(1), all observed: {own * 1e6:.2f} us, {ratio:.2f} single")
     own, _ = _batch(256, sensors, _ENVIRONMENT, acts=True)
     print(f"environment in a batch of 256: {loop / (own * _ENVIRONMENT):.1f} times as fast")
     one, wall = _batch(256, sensors, _ENVIRONMENT)
