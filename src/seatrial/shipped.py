@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cache
 from pathlib import Path
 
 from .errors import InputError
@@ -14,6 +15,7 @@ _IN_KITS = {"hil_profiles": "profiles"}
 """Folders at the top that kits call otherwise."""
 
 
+@cache
 def shipped_folder(name: str) -> Path:
     """Return the core's folder ``name``: in the wheel, or at the top of a checkout."""
     installed = _PACKAGE / "_shipped" / name

@@ -202,3 +202,15 @@ def test_a_peer_that_is_no_scheduler_is_said(campaign, tmp_path, monkeypatch, an
     for one in taken:
         one.close()
     assert not (tmp_path / "out").exists()
+
+
+def test_a_limit_holds_on_a_cluster(cluster, tmp_path):
+    address, _ = cluster
+    (tmp_path / "slow.toml").write_text(
+        CAMPAIGN.replace("count = 24", "count = 2").replace("10 s", "1000 s"), "utf-8"
+    )
+    slow = load_campaign(str(tmp_path / "slow.toml"), limit={"wall": "300 ms"})
+    summary = run_sweep(slow, tmp_path / "out", How("direct", cluster=address, keep="none"))
+    assert (summary.ended, summary.broken) == (2, 2)
+    errors = pd.read_parquet(tmp_path / "out/results.parquet")["error"]
+    assert errors.str.contains("beyond its limit of 0.3 s of wall time").all()

@@ -1,5 +1,6 @@
 """Content identity of campaigns: no file that decides a case changes without being named."""
 
+import hashlib
 import json
 import subprocess
 import sys
@@ -14,6 +15,10 @@ from seatrial.trial.campaigns.identity import identity_of
 from seatrial.trial.campaigns.in_folders import run_campaign
 from seatrial.trial.campaigns.shipment import packed, unpacked
 from seatrial.trial.campaigns.sweep import How, run_sweep
+from seatrial.trial.files.trial import load_trial
+from seatrial.trial.records.compare import compare
+from seatrial.trial.records.run_folder import read_manifest
+from seatrial.trial.running.run import run_trial
 from tests.command import seatrial
 
 COMPONENT = """
@@ -113,6 +118,43 @@ def test_every_file_that_a_case_opens_decides_its_identity(project, tmp_path):
         assert changes.text() == said
         path.write_text(FILES[name], "utf-8")
     assert not identity_of(campaign_of(project)).changed(whole.content())
+
+
+def test_the_manifest_of_a_run_has_the_identity_of_what_its_campaign_says(project, tmp_path):
+    identity = identity_of(campaign_of(project)).content()
+    (case, *_) = campaign_of(project).cases()
+    run_trial(case.trial, tmp_path / "a", engine="direct")
+    found = read_manifest(tmp_path / "a")["identity"]
+    assert found["program"] == identity["program"]
+    of_campaign = {Path(name).name: sha for name, sha in identity["files"]["t"].items()}
+    of_run = {Path(name).name: sha for name, sha in found["files"]["t"].items()}
+    unread = {"c.toml", "inner-two.toml"}  # the campaign itself, and a choice of another case
+    assert of_run == {name: sha for name, sha in of_campaign.items() if name not in unread}
+    for name, sha in found["files"]["t"].items():
+        data = (project / "trials" / name).read_bytes()
+        assert sha == hashlib.sha256(data).hexdigest()
+
+
+def test_files_that_two_runs_do_not_share_are_named(project, tmp_path):
+    for out, gain in (("a", "1.0"), ("b", "1.00")):
+        (project / "parts/gain.txt").write_text(gain, "utf-8")
+        run_trial(load_trial(str(project / "trials/t.toml")), tmp_path / out, engine="direct")
+    comparison = compare(tmp_path / "a", tmp_path / "b")
+    assert comparison.identical
+    assert [change.name for change in comparison.changes] == ["../parts/gain.txt (file)"]
+
+
+@pytest.mark.slow
+def test_a_case_of_a_folder_runs_again_of_the_same_files_alone(project, tmp_path):
+    run_sweep(campaign_of(project), tmp_path / "out", how())
+    arguments = ("campaign", "rerun", "campaigns/c.toml", "--case", "1", "--engine", "direct")
+    of = ("--of", str(tmp_path / "out"))
+    same = seatrial(*arguments, *of, "--out", "again", cwd=project)
+    assert same.returncode == 0, same.stderr
+    (project / "parts/gain.txt").write_text("3.0", "utf-8")
+    other = seatrial(*arguments, *of, "--out", "other", cwd=project)
+    assert (other.returncode, (project / "other").exists()) == (2, False)
+    assert "changed since: ../parts/gain.txt: no run would be the same" in other.stderr
 
 
 def test_what_is_beside_them_decides_nothing(project):

@@ -41,7 +41,7 @@ def test_a_bar_and_a_row_lead_to_a_case(written, tmp_path: Path) -> None:
         assert "Case 2 has no folder here" in said.inner_text()
         assert (
             said.locator("code").inner_text()
-            == "seatrial campaign rerun campaign.toml --engine direct --case 2"
+            == "seatrial campaign rerun campaign.toml --engine direct --of out --case 2"
         )
         page.evaluate(point % 4)
         page.wait_for_url("**/05-*/report.html")

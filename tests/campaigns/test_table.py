@@ -139,7 +139,7 @@ def test_a_stopped_campaign_goes_on_to_the_same_table(written, tmp_path):
 @pytest.mark.slow
 def test_a_case_that_hangs_is_a_failed_row_and_the_rest_goes_on(written, tmp_path):
     written('keep = "none"\n[grid]\n"case.way" = ["run", "wait", "run"]\n"case.number" = ["1 m"]\n')
-    options = ("--engine", "direct", "--hang-after", "0.5", "--no-report", "--out", "out")
+    options = ("--engine", "direct", "--limit", "call=0.5 s", "--no-report", "--out", "out")
     done = command("run", "campaign.toml", *options, cwd=tmp_path)
     assert done.returncode == 3
     assert "1 cases could not go on" in done.stderr

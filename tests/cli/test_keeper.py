@@ -179,14 +179,14 @@ def test_a_hang_in_a_step_ends_the_run(
     assert vehicle.read().count(b"!") >= 25
     _, message = process.communicate(timeout=60)
     assert process.returncode == 3
-    assert "hanger: its step at t = 0.29 s hung: no progress for 2 s (--hang-after)" in message
+    assert "hanger: its step at t = 0.29 s hung: no progress for 2 s (limit.call)" in message
     assert f"sent the safe state of port to serial:{vehicle.device}:115200" in message
     assert '"status": "failed"' in (tmp_path / "run" / "manifest.json").read_text()
 
 
 @pytest.mark.slow
 def test_a_hang_in_the_start_ends_the_run(start: Start, vehicle: Vehicle, tmp_path: Path) -> None:
-    process = start("sleeps", "start", "--engine", "direct", "--hang-after", "1")
+    process = start("sleeps", "start", "--engine", "direct", "--limit", "call=1 s")
     is_last(vehicle)
     _, message = process.communicate(timeout=60)
     assert process.returncode == 3
@@ -196,7 +196,7 @@ def test_a_hang_in_the_start_ends_the_run(start: Start, vehicle: Vehicle, tmp_pa
 
 @pytest.mark.interop
 def test_a_hang_at_the_end_ends_the_run(start: Start, vehicle: Vehicle, tmp_path: Path) -> None:
-    process = start("ignores", "close", "--engine", "direct", "--hang-after", "1")
+    process = start("ignores", "close", "--engine", "direct", "--limit", "call=1 s")
     wait_for(lambda: b"!!!" in vehicle.read())
     process.send_signal(signal.SIGINT)
     is_last(vehicle)
@@ -233,15 +233,13 @@ def write_hanger(write, *, stop: str, how: str, longest: str = "20.0") -> None:
 
 def test_a_hang_without_hardware_ends_the_run(write, tmp_path: Path) -> None:
     write_hanger(write, stop="10 s", how="holds the lock")
-    arguments = ("--engine", "direct", "--hang-after", "0.5", "--out", "run")
+    arguments = ("--engine", "direct", "--limit", "call=0.5 s", "--out", "run")
     done = seatrial("run", "trial.toml", *arguments, cwd=tmp_path)
     assert done.returncode == 3
-    assert (
-        "hanger: its step at t = 0.29 s hung: no progress for 0.5 s (--hang-after)" in done.stderr
-    )
+    assert "hanger: its step at t = 0.29 s hung: no progress for 0.5 s (limit.call)" in done.stderr
     lines = (tmp_path / "run" / "signals.csv").read_text().splitlines()
     assert len(lines) == 31
-    refused = seatrial("run", "trial.toml", "--hardware", "--hang-after", "0", cwd=tmp_path)
+    refused = seatrial("run", "trial.toml", "--hardware", "--limit", "call=none", cwd=tmp_path)
     assert refused.returncode == 2
     assert "a device needs a limit" in refused.stderr
 
@@ -249,8 +247,8 @@ def test_a_hang_without_hardware_ends_the_run(write, tmp_path: Path) -> None:
 @pytest.mark.slow
 def test_a_slow_step_is_no_hang(write, tmp_path: Path) -> None:
     write_hanger(write, stop="0.5 s", how="sleeps", longest="1.0")
-    for limit in ("10", "0"):
-        arguments = ("--engine", "direct", "--hang-after", limit, "--out", f"run{limit}")
+    for limit in ("10 s", "none"):
+        arguments = ("--engine", "direct", "--limit", f"call={limit}", "--out", f"run-{limit}")
         assert seatrial("run", "trial.toml", *arguments, cwd=tmp_path).returncode == 0
 
 
@@ -269,7 +267,7 @@ def test_a_run_that_is_suspended_leaves_no_order(start: Start, vehicle: Vehicle)
 def test_a_simulation_that_is_suspended_goes_on(write, tmp_path: Path) -> None:
     write_hanger(write, stop="2 s", how="")
     command = [SEATRIAL, "run", "trial.toml", "--engine", "direct", "--real-time", "1"]
-    process = subprocess.Popen([*command, "--hang-after", "0.5", "--out", "run"], cwd=tmp_path)
+    process = subprocess.Popen([*command, "--limit", "call=0.5 s", "--out", "run"], cwd=tmp_path)
     wait_for((tmp_path / "run").is_dir)
     child = child_of(process)
     for pid in (process.pid, child):
@@ -320,7 +318,7 @@ def test_a_signal_to_the_process_of_the_run_ends_it_in_order(
 def test_one_signal_ends_a_hang_in_bounded_time(
     how: str, whose: str, start: Start, vehicle: Vehicle, tmp_path: Path
 ) -> None:
-    process = start(how, "step", "--engine", "direct", "--hang-after", "100")
+    process = start(how, "step", "--engine", "direct", "--limit", "call=100 s")
     hanging(tmp_path)
     child = child_of(process)
     os.kill(child if whose == "child" else process.pid, signal.SIGTERM)
@@ -366,7 +364,7 @@ def test_a_group_that_is_killed_leaves_the_safe_state(
 def test_a_hung_run_whose_supervisor_is_suspended_or_killed(
     start: Start, vehicle: Vehicle, tmp_path: Path
 ) -> None:
-    process = start("holds the lock", "step", "--engine", "direct", "--hang-after", "5")
+    process = start("holds the lock", "step", "--engine", "direct", "--limit", "call=5 s")
     hanging(tmp_path)
     child = child_of(process)
     os.kill(process.pid, signal.SIGSTOP)
@@ -448,7 +446,7 @@ def test_twenty_of_twenty_containers_leave_the_safe_state(
 def stop_container(
     how: str, where: str, start: Start, vehicle: Vehicle, tmp_path: Path, engine: str = "direct"
 ) -> None:
-    options = ("--engine", engine, "--hang-after", "100")
+    options = ("--engine", engine, "--limit", "call=100 s")
     process = start(how, where, *options, within=tuple(NAMESPACE))
     if how:
         hanging(tmp_path)

@@ -165,3 +165,18 @@ def test_the_plugin_is_in_the_metadata() -> None:
 
     project = tomllib.loads((Path(__file__).parents[2] / "pyproject.toml").read_text("utf-8"))
     assert project["project"]["entry-points"]["pytest11"] == {"seatrial": "seatrial.testing.plugin"}
+
+
+@pytest.mark.slow
+def test_a_run_beyond_a_limit_of_the_mark_or_of_the_option_fails_its_test(tmp_path: Path) -> None:
+    mark = '@pytest.mark.trial("long.toml", limit={"memory": "1 kB"})'
+    (tmp_path / "rig.toml").write_text(RIG)
+    (tmp_path / "long.toml").write_text(TRIAL.format(least=0.5).replace('"1 s"', '"1000 s"'))
+    (tmp_path / "test_long.py").write_text(f"import pytest\n{mark}\ndef test(trial): pass\n")
+    for arguments in (["test_long.py"], ["--seatrial", "long.toml", "--seatrial-limit"]):
+        given = ["memory=1 kB"] if len(arguments) > 1 else []
+        done = pytest_in(tmp_path, *arguments, *given)
+        assert done.returncode == 1
+        assert "beyond its limit of 0.001 MB of memory (limit.memory)" in done.stdout
+    wrong = pytest_in(tmp_path, *arguments, "memory")
+    assert "--seatrial-limit: KEY=VALUE is needed, found 'memory'" in wrong.stdout

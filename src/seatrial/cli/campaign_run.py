@@ -2,23 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import Any
 
 import typer
 from rich.markup import escape
 
 from ..errors import InputError, SimulationError
 from ..system.system import Engine
-from ..trial.campaigns.campaign import Campaign, load_campaign
+from ..trial.campaigns.campaign import Campaign
 from ..trial.campaigns.cases import Case
 from ..trial.campaigns.further_page import write_further_page
 from ..trial.campaigns.in_folders import run_campaign
 from ..trial.campaigns.sweep import How as SweepHow
 from ..trial.campaigns.sweep import keep_named
+from ..trial.campaigns.twice import First, check_repeatable, sample
 from ..trial.reports.campaign_report import write_campaign_report, write_case_report
 from ..trial.reports.playing import play
 from ..trial.running.hooks import Hooks
@@ -29,6 +28,7 @@ from .show import console, print_case, print_notes, run_entry
 from .statuses import FAILED
 from .stopping import stoppable
 from .table_run import run_table
+from .twice import exit_unless, repeat
 from .watch import Watch
 
 
@@ -42,26 +42,23 @@ class How:
     rerun_changed: bool
     cluster: str | None
     keep: str | None
-    hang_after: float | None
     keep_going: bool
+    twice: bool
 
 
-def run_cases(
-    name: str, changes: Mapping[str, Any], out: Path | None, how: How, leaves: Leaves
-) -> None:
+def run_cases(campaign: Campaign, out: Path | None, how: How, leaves: Leaves) -> None:
     """Run a campaign into its table, or each case into a folder. Raises InputError."""
-    campaign = load_campaign(name, changes)
+    for trial in campaign.trials if how.twice else ():
+        check_repeatable(trial)
     print_notes([f"{trial} is left out: {why}" for trial, why in campaign.left_out.items()])
     if how.keep is not None or how.cluster is not None or campaign.has_table:
-        if how.hang_after is not None and how.cluster is not None:
-            raise InputError("--hang-after works with cases that run on this machine")
         if campaign.file.page is not None:
             raise InputError(
                 "--keep and --cluster leave a table: this campaign makes a page of all"
             )
         keep = keep_named(how.keep, "--keep")
         sweep = SweepHow(how.engine, how.jobs, how.cluster, keep, how.resume, how.rerun_changed)
-        run_table(campaign, out, sweep, how.hang_after, junit=leaves.junit, report=leaves.report)
+        run_table(campaign, out, sweep, junit=leaves.junit, report=leaves.report, twice=how.twice)
     else:
         _run_folders(campaign, out, how, leaves)
 
@@ -78,10 +75,10 @@ def _run_folders(campaign: Campaign, out: Path | None, how: How, leaves: Leaves)
             hooks = Hooks(
                 building=watch.building,
                 progress=watch.campaign,
+                under_way=watch.under_way,
                 stop_requested=stop.requested,
                 interruptible=stop.interruptible,
                 note=lambda text: print_notes([text]),
-                hang_after=how.hang_after,
                 keep_going=how.keep_going,
             )
             watch.expect(len(cases))
@@ -108,13 +105,19 @@ def _run_folders(campaign: Campaign, out: Path | None, how: How, leaves: Leaves)
         }
         leaves.write_page(lambda: write_campaign_report(folder), results)
         failed = _further_page(folder) if leaves.report else []
-    whole = sum(result.status != "stopped" for result in results)
+        whole = sum(result.status != "stopped" for result in results)
+        is_same = True
+        if how.twice and whole == len(cases):
+            chosen = [finished[number] for number in sample(whole)]
+            firsts = [First(case.name, case.trial, result.folder) for case, result in chosen]
+            is_same = repeat(firsts, how.engine, stop)
     if whole < len(cases):
         raise SimulationError(
             f"stopped; {whole} of {len(cases)} cases came to an end: "
             f"--out {folder} --resume goes on"
         )
     exit_with(results)
+    exit_unless(is_same)
     if failed:
         raise typer.Exit(FAILED)
 

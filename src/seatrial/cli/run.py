@@ -12,6 +12,9 @@ from ..links.hardware import allow_devices, allow_network
 from ..plugins import service
 from ..system.fault_entry import read_fault
 from ..system.system import Engine
+from ..trial.campaigns.campaign import load_campaign
+from ..trial.campaigns.twice import First, check_repeatable
+from ..trial.files.limit_entry import NONE, limits_of
 from ..trial.files.trial import Trial, load_trial
 from ..trial.reports.playing import play
 from ..trial.reports.report import write_report
@@ -37,11 +40,11 @@ from .options import (
 )
 from .run_options import (
     Cluster,
-    HangAfter,
     Jobs,
     Junit,
     KeepGoing,
     KeepName,
+    Limit,
     Live,
     LiveControl,
     NoReport,
@@ -52,9 +55,11 @@ from .run_options import (
     Record,
     RerunChanged,
     Resume,
+    Twice,
 )
 from .show import print_notes, print_reachable, print_verdicts, run_entry
 from .stopping import stoppable
+from .twice import exit_unless, repeat
 from .watch import Watch
 
 
@@ -89,12 +94,14 @@ def run(
     cluster: Cluster = None,
     keep: KeepName = None,
     no_report: NoReport = False,
-    hang_after: HangAfter = None,
+    limit: Limit = None,
+    twice: Twice = False,
     keep_going: KeepGoing = False,
 ) -> None:
     """Run a trial, a campaign of trials, or a vehicle that sets out, and say what holds."""
     chosen = engine_named(engine)
-    _allow(hardware, network, hang_after, keep_going)
+    _allow(hardware, network, keep_going, twice)
+    limits = limits_of(limit or [], "--limit")
     changes = changes_of(settings, choices, vehicle, autopilot)
     pace = {"factor": real_time, "overrun": overrun}
     pace = {key: value for key, value in pace.items() if value is not None}
@@ -114,8 +121,10 @@ def run(
         for refusal, given in of_trials.items():
             if given:
                 raise InputError(refusal)
-        how = How(chosen, jobs, resume, rerun_changed, cluster, keep, hang_after, keep_going)
-        run_cases(trial, changes, out, how, leaves)
+        how = How(chosen, jobs, resume, rerun_changed, cluster, keep, keep_going, twice)
+        campaign = load_campaign(trial, changes, limits)
+        _refuse_endless([block.base for block in campaign.cases().blocks], hardware)
+        run_cases(campaign, out, how, leaves)
         return
     if jobs is not None or resume or rerun_changed or keep or cluster:
         said = "--jobs, --resume, --rerun-changed, --keep and --cluster"
@@ -123,20 +132,29 @@ def run(
     trial, changes = with_vehicle(trial, changes)
     loaded = load_trial(trial, changes=changes, origin="--set")
     loaded = loaded.failing([read_fault(text, "--fault") for text in faults or []], "--fault")
-    loaded = _paced(loaded, pace).recording(record, "--record")
-    _run_trial(loaded, out, chosen, page, leaves, hang_after, keep_going)
+    loaded = _paced(loaded, pace).recording(record, "--record").limited(limits, "--limit")
+    _refuse_endless([loaded], hardware)
+    if twice:
+        check_repeatable(loaded)
+    _run_trial(loaded, out, chosen, page, leaves, keep_going, twice=twice)
 
 
-def _allow(hardware: bool, network: bool, hang_after: float | None, keep_going: bool) -> None:
-    """Allow devices and other hosts. Raises InputError for options that need devices or limits."""
+def _allow(hardware: bool, network: bool, keep_going: bool, twice: bool) -> None:
+    """Allow devices and other hosts. Raises InputError for options that need devices."""
+    if twice and hardware:
+        raise InputError("--twice does not go with --hardware: no two runs with a device are alike")
     if keep_going and not hardware:
         raise InputError("--keep-going goes with --hardware: a simulation goes on in any case")
     if hardware:
-        if hang_after == 0.0:
-            raise InputError("--hang-after 0 does not go with --hardware: a device needs a limit")
         allow_devices()
     if network:
         allow_network()
+
+
+def _refuse_endless(trials: list[Trial], hardware: bool) -> None:
+    """Raise InputError for calls without a limit where devices are allowed."""
+    if hardware and any(trial.file.limit.call == NONE for trial in trials):
+        raise InputError("limit.call = none does not go with --hardware: a device needs a limit")
 
 
 def _run_trial(
@@ -145,8 +163,9 @@ def _run_trial(
     engine: Engine,
     page: Any | None,
     leaves: Leaves,
-    hang_after: float | None,
     keep_going: bool,
+    *,
+    twice: bool,
 ) -> None:
     print_notes(trial.notes)
     with stoppable() as stop:
@@ -157,7 +176,6 @@ def _run_trial(
                 stop_requested=stop.requested,
                 interruptible=stop.interruptible,
                 reachable=print_reachable,
-                hang_after=hang_after,
                 keep_going=keep_going,
             )
             if page is None:
@@ -168,7 +186,10 @@ def _run_trial(
         answer.result = {"trial": trial.name, "runs": [run_entry(result)]}
         leaves.write_junit([(trial.name, result)])
         leaves.write_page(lambda: write_report(result.folder, play=play), [result])
+        first = First(trial.name, trial, result.folder)
+        is_same = not twice or result.status == "stopped" or repeat([first], engine, stop)
     exit_with([result])
+    exit_unless(is_same)
 
 
 def _paced(trial: Trial, pace: dict[str, Any]) -> Trial:

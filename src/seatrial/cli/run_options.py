@@ -56,18 +56,25 @@ LiveControl = Annotated[
         "--live-control", help="With --hardware: the page may command, too, and not only watch."
     ),
 ]
-HangAfter = Annotated[
-    float | None,
+Limit = Annotated[
+    list[str] | None,
     typer.Option(
-        metavar="SECONDS",
-        min=0.0,
-        help="Wall time of a call after which it hangs, and the run ends; 0: never (default: in "
-        "real time 2 in a step and 10 at the end, else 60).",
+        metavar="KEY=VALUE",
+        help="End a run beyond 'wall' time, 'memory', or wall time of a 'call' without progress: "
+        "wall='60 s', memory='1 GB', call=none.",
     ),
 ]
 KeepGoing = Annotated[
     bool,
     typer.Option("--keep-going", help="With --hardware: go on without a link that is lost."),
+]
+Twice = Annotated[
+    bool,
+    typer.Option(
+        "--twice",
+        help="Repeat the run, or five cases of a campaign, and name what differs; status 1 if "
+        "anything does.",
+    ),
 ]
 Cluster = Annotated[
     str | None,

@@ -9,15 +9,18 @@ from rich.markup import escape
 
 from ..errors import InputError, SimulationError
 from ..trial.campaigns.campaign import Campaign
-from ..trial.campaigns.cases import Case
+from ..trial.campaigns.case_list import Cases
+from ..trial.campaigns.cases import Case, case_folder
 from ..trial.campaigns.ended import Ended
 from ..trial.campaigns.page import write_table_page
 from ..trial.campaigns.sweep import How, Summary, run_sweep
+from ..trial.campaigns.twice import First, sample
 from ..trial.running.hooks import Hooks
 from .answer import answer
 from .show import console, print_notes
 from .statuses import FAILED
 from .stopping import stoppable
+from .twice import exit_unless, repeat
 from .watch import Watch
 
 _SHOWN = {"pass": ("green", "PASS"), "fail": ("red", "FAIL"), "undecided": ("yellow", "UNDECIDED")}
@@ -29,39 +32,58 @@ def run_table(
     campaign: Campaign,
     out: Path | None,
     how: How,
-    hang_after: float | None,
     *,
     junit: Path | None,
     report: bool,
+    twice: bool,
 ) -> None:
     """Run a campaign into its table, and say what came of it."""
     if junit is not None:
         raise InputError("--junit works with a campaign whose every case leaves a folder")
-    planned = len(campaign.cases())
+    cases = campaign.cases()
+    planned = len(cases)
     with stoppable() as stop, Watch(campaign.read_from.name) as watch:
         watch.expect(planned)
-        ended_count = failed = 0
+        failed = 0
 
         def done(case: Case, ended: Ended) -> None:
-            nonlocal ended_count, failed
-            ended_count += 1
+            nonlocal failed
             if not ended.measured.passed:
                 failed += 1
                 if failed <= _SAID:
                     watch.log(lambda: _print_failed(case, ended))
-            watch.cases(ended_count, failed)
+
+        def under_way(ended: int, case: int, wall: float) -> None:
+            watch.cases(ended, failed)
+            watch.under_way(ended, case, wall)
 
         hooks = Hooks(
             stop_requested=stop.requested,
+            under_way=under_way,
             interruptible=stop.interruptible,
             note=lambda text: print_notes([text]),
-            hang_after=hang_after,
         )
         summary = run_sweep(campaign, out, how, hooks, done)
     page = write_table_page(summary.folder) if report else None
     if failed > _SAID:
         console.print(f"... and {failed - _SAID} more that failed")
     _say(campaign, summary, page)
+    is_same = True
+    if twice and summary.whole:
+        with stoppable() as stop:
+            is_same = repeat(_firsts(cases, summary), how.engine, stop)
+    _exit_with(summary)
+    exit_unless(is_same)
+
+
+def _firsts(cases: Cases, summary: Summary) -> list[First]:
+    """Return the cases that are repeated."""
+    firsts = []
+    for number in sample(summary.ended):
+        case = cases[number]
+        folder = summary.folder / case_folder(number + 1, case)
+        firsts.append(First(case.name, case.trial, folder if folder.is_dir() else None))
+    return firsts
 
 
 def _print_failed(case: Case, ended: Ended) -> None:
@@ -96,6 +118,10 @@ def _say(campaign: Campaign, summary: Summary, page: Path | None) -> None:
             f"stopped; {summary.ended} of {summary.planned} cases came to an end: "
             f"--out {folder} --resume goes on"
         )
+
+
+def _exit_with(summary: Summary) -> None:
+    """End with the status of a campaign. Raises SimulationError, typer.Exit."""
     if summary.accepted:
         if any(each.verdict != "pass" for each in summary.accepted):
             raise typer.Exit(FAILED)

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import math
 import sys
 import time
 from collections.abc import Callable
+from functools import partial
 from types import TracebackType
 from typing import Protocol
 
@@ -26,6 +28,8 @@ class Watch:
         self._clock, self._started = clock, clock()
         self._begun: float | None = None
         self._failed = 0
+        self._ended, self._longest = 0, (0, 0.0)
+        self._show_again: Callable[[], None] = lambda: None
         self._display: _Display = (
             _Bar(name) if console.is_terminal and not answer.quiet else _Lines(name, clock)
         )
@@ -64,20 +68,34 @@ class Watch:
             self._begun = self._clock()
         elapsed = self._clock() - self._begun
         factor = passed / elapsed if elapsed > 0 else 0.0
-        left = f", {_duration((whole - passed) / factor)} left" if factor > 0 else ""
+        left = self._left((whole - passed) / factor if factor > 0 else math.inf)
         failed = f", {self._failed} failed" if self._failed else ""
-        state = f"{self._case} of {self._cases} cases{failed}, {factor:.1f} x real time{left}"
+        ended = max(self._case, self._ended)  # cases are logged in their order
+        state = f"{ended} of {self._cases} cases{failed}, {factor:.1f} x real time{left}"
         self._display.show(passed / whole, state)
+        self._show_again = partial(self.campaign, passed, whole)
+
+    def under_way(self, ended: int, case: int, wall: float) -> None:
+        """Show how many cases have ended, and which takes long: from 0, wall time so far in s."""
+        self._ended, self._longest = ended, (case, wall)
+        self._show_again()
 
     def cases(self, ended: int, failed: int) -> None:
         """Show how many cases of a campaign have ended, and of them failed."""
         if self._begun is None:
             self._begun = self._clock()
         elapsed = self._clock() - self._begun
-        rate = (ended - 1) / elapsed if elapsed > 0 else 0.0
-        left = f", {_duration((self._cases - ended) / rate)} left" if rate > 0 else ""
+        rate = max(ended - 1, 0) / elapsed if elapsed > 0 else 0.0
+        left = self._left((self._cases - ended) / rate if rate > 0 else math.inf)
         state = f"{ended} of {self._cases} cases, {failed} failed, {rate:.3g} cases/s{left}"
         self._display.show(ended / self._cases, state)
+
+    def _left(self, estimate: float) -> str:
+        """Return the time left, s; or how long a case has taken that makes it no estimate."""
+        case, wall = self._longest
+        if wall > max(PERIOD, estimate if math.isfinite(estimate) else 0.0):
+            return f", case {case + 1} has been running for {_duration(wall)}"
+        return f", {_duration(estimate)} left" if math.isfinite(estimate) else ""
 
     def count(self, *, failed: bool) -> None:
         """Count a case that has failed."""

@@ -27,6 +27,7 @@ class Variant:
     name: str
     set: dict[str, Any]
     engine: Engine
+    limit: dict[str, str]
     id: str
 
     def loaded(self, folder: Path) -> Trial:
@@ -35,7 +36,8 @@ class Variant:
 
         beside = folder / self.name
         name = str(beside) if self.name.endswith(".toml") and beside.is_file() else self.name
-        return load_trial(name, changes=as_settings(self.set), origin="mark trial")
+        loaded = load_trial(name, changes=as_settings(self.set), origin="mark trial")
+        return loaded.limited(self.limit, "mark trial: limit")
 
 
 def variants(marks: Sequence[pytest.Mark]) -> list[Variant]:
@@ -48,6 +50,7 @@ def _variants(
     *,
     set: dict[str, Any] | None = None,
     engine: str = "direct",
+    limit: dict[str, str] | None = None,
     **lists: Iterable[Any] | None,
 ) -> list[Variant]:
     for key in lists:
@@ -60,5 +63,7 @@ def _variants(
         label = "-".join(
             [Path(name).stem, *(f"seed{v}" if k == "seed" else str(v) for k, v in own.items())]
         )
-        found.append(Variant(str(name), {**(set or {}), **own}, as_engine(engine), label))
+        found.append(
+            Variant(str(name), {**(set or {}), **own}, as_engine(engine), limit or {}, label)
+        )
     return found

@@ -18,7 +18,8 @@ if TYPE_CHECKING:
 _FAILED = pytest.StashKey[bool]()
 _HOLDERS = pytest.StashKey[list[Any]]()
 _MARK = (
-    "trial(name, *, set=None, engine='direct', vehicles=None, autopilots=None, seeds=None): "
+    "trial(name, *, set=None, engine='direct', limit=None, vehicles=None, autopilots=None, "
+    "seeds=None): "
     "run a trial of seatrial; a list runs the test once for each"
 )
 
@@ -34,6 +35,13 @@ def pytest_addoption(parser: pytest.Parser) -> None:
         choices=("direct", "fmu", "native"),
         default="direct",
         help="engine of those: components in process, or each as an FMU (default: direct)",
+    )
+    group.addoption(
+        "--seatrial-limit",
+        metavar="KEY=VALUE",
+        action="append",
+        default=[],
+        help="end a run beyond it, which fails its test: wall='60 s', memory='1 GB', call='10 s'",
     )
     group.addoption(
         "--seatrial-runs",
@@ -92,14 +100,15 @@ def pytest_runtest_makereport(item: pytest.Item, call: pytest.CallInfo[None]) ->
 def trial(request: pytest.FixtureRequest) -> Iterator[TrialRun]:
     """The trial that the mark names, run: `seatrial.testing.trial_run.TrialRun`."""
     from .marked import variants
-    from .trial_run import TrialRun, run_folder
+    from .trial_run import TrialRun, limited, run_folder
 
     marks = list(request.node.iter_markers("trial"))
     if not marks:
         raise pytest.UsageError("the fixture 'trial' needs @pytest.mark.trial(NAME)")
     variant = getattr(request, "param", None) or variants(marks)[0]
     folder = run_folder(request.config, request.node.nodeid)
-    run = TrialRun.of(variant.loaded(request.path.parent), folder, variant.engine)
+    loaded = limited(variant.loaded(request.path.parent), request.config)
+    run = TrialRun.of(loaded, folder, variant.engine)
     request.node.stash.setdefault(_HOLDERS, []).append(run)
     yield run
     run.leave(keep=request.node.stash.get(_FAILED, False))

@@ -11,7 +11,7 @@ import pytest
 from ..api.written import as_engine
 from ..errors import InputError, SeatrialError
 from ..system.files import read_toml
-from .trial_run import TrialRun, run_folder
+from .trial_run import TrialRun, limited, run_folder
 
 if TYPE_CHECKING:
     from ..trial.files.trial import Trial
@@ -63,7 +63,7 @@ class TrialItem(pytest.Item):
         folder = run_folder(self.config, self.nodeid)
         self.user_properties.append(("seatrial_trial", self._loaded.name))
         engine = as_engine(self.config.getoption("--seatrial-engine"))
-        run = TrialRun.of(self._loaded, folder, engine)
+        run = TrialRun.of(limited(self._loaded, self.config), folder, engine)
         if run.result.passed:
             run.leave(keep=False)
             return

@@ -122,6 +122,14 @@ class TrialRun:
                 self.result.folder.parent.rmdir()
 
 
+def limited(loaded: Trial, config: pytest.Config) -> Trial:
+    """Return a trial with the limits of ``--seatrial-limit``. Raises InputError."""
+    from ..trial.files.limit_entry import limits_of
+
+    option = "--seatrial-limit"
+    return loaded.limited(limits_of(config.getoption(option), option), option)
+
+
 def run_folder(config: pytest.Config, node_id: str) -> Path:
     """Return a new folder for a test's run, which is not there yet."""
     base = config.rootpath / str(config.getoption("--seatrial-runs"))

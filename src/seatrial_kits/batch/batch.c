@@ -95,22 +95,6 @@ static fmi2Status set_one(Copy *copy, uint32_t reference, double value) {
     }
 }
 
-static fmi2Status get_one(Copy *copy, uint32_t reference, double *value) {
-    fmi2Integer whole = 0;
-    fmi2Status status = fmi2OK;
-    switch (rig_variables[reference].type) {
-    case REAL_TYPE:
-        return fmi2GetReal(copy->rig, &reference, 1, value);
-    case INTEGER_TYPE:
-        status = fmi2GetInteger(copy->rig, &reference, 1, &whole);
-        break;
-    default:
-        status = fmi2GetBoolean(copy->rig, &reference, 1, &whole);
-    }
-    *value = (double)whole;
-    return status;
-}
-
 static void set_row(Copy *copy, const uint32_t *references, int64_t count, const double *row) {
     for (int64_t k = 0; k < count && !copy->failed; k++)
         check(copy, set_one(copy, references[k], row[k]));
@@ -139,16 +123,9 @@ EXPORTED void batch_override(Batch *batch, const uint8_t *mask, const uint32_t *
 }
 
 EXPORTED void batch_get(Batch *batch, const uint32_t *references, int64_t count, double *values) {
-    int all_real = 1;
-    for (int64_t k = 0; k < count; k++) all_real &= rig_variables[references[k]].type == REAL_TYPE;
-    for (int64_t i = 0; i < batch->count; i++) {
+    for (int64_t i = 0; i < batch->count; i++) { /* of a copy that has failed: what it had */
         Copy *copy = batch->copies + i;
-        double *row = values + i * count;
-        if (all_real) { /* of a copy that has failed: what it had */
-            check(copy, fmi2GetReal(copy->rig, references, (size_t)count, row));
-            continue;
-        }
-        for (int64_t k = 0; k < count; k++) check(copy, get_one(copy, references[k], row + k));
+        check(copy, rig_read(copy->rig, references, (size_t)count, values + i * count));
     }
 }
 

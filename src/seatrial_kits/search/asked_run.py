@@ -14,7 +14,7 @@ from seatrial.trial.campaigns.campaign import INDEX, Campaign
 from seatrial.trial.campaigns.cases import Case
 from seatrial.trial.campaigns.distributions import Law, number_and_unit
 from seatrial.trial.campaigns.finding import read_answer
-from seatrial.trial.campaigns.identity import IDENTITY, identity_of
+from seatrial.trial.campaigns.identity import identity_of, refuse_changed
 from seatrial.trial.campaigns.questions import Questions
 from seatrial.trial.campaigns.sweep import index_of, refuse_other
 from seatrial.trial.campaigns.table import RESULTS, read_rows
@@ -34,8 +34,7 @@ def asked_run(campaign: Campaign, folder: Path, number: int) -> Case:
     settings = (campaign.file.ask or Questions()).model_dump()
     identity, index = identity_of(campaign), folder / INDEX
     refuse_other(index, index_of(campaign, identity, engine, 0, [question, settings]))
-    if changes := identity.changed(checked_json(index, CAMPAIGN).get(IDENTITY) or {}):
-        raise InputError(f"{index}: changed since: {changes.text()}: no run would be the same")
+    refuse_changed(index, identity)
     cases = asked_of(campaign, question)
     space = space_of(campaign, question, f"{campaign.read_from.path}: ask")
     rows = read_rows(folder / RESULTS)

@@ -14,8 +14,9 @@ from seatrial.cli.show import console, print_verdicts, run_entry
 from seatrial.cli.statuses import FAILED
 from seatrial.cli.stopping import stoppable
 from seatrial.errors import InputError, SimulationError
-from seatrial.trial.campaigns.campaign import Campaign, load_campaign
+from seatrial.trial.campaigns.campaign import INDEX, Campaign, load_campaign
 from seatrial.trial.campaigns.cases import Case
+from seatrial.trial.campaigns.identity import identity_of, refuse_changed
 from seatrial.trial.reports.playing import play
 from seatrial.trial.reports.report import write_report
 from seatrial.trial.running.hooks import Hooks
@@ -63,11 +64,20 @@ def rerun(
         Path | None,
         typer.Option("--asked", metavar="FOLDER", help="A question's folder: one of its runs."),
     ] = None,
+    of: Annotated[
+        Path | None,
+        typer.Option(
+            "--of", metavar="FOLDER", help="The campaign's folder: refuse files changed since."
+        ),
+    ] = None,
     engine: EngineName = "fmu",
     out: Out = None,
 ) -> None:
     """Run one case of a campaign again, with its record and its report."""
-    case = _case(load_campaign(name), asked, number)
+    campaign = load_campaign(name)
+    if of is not None:
+        refuse_changed(of / INDEX, identity_of(campaign))
+    case = _case(campaign, asked, number)
     with stoppable() as stop:
         hooks = Hooks(stop_requested=stop.requested, interruptible=stop.interruptible)
         result = run_supervised(case.trial, out, engine=engine_named(engine), hooks=hooks)

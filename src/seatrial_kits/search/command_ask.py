@@ -76,6 +76,7 @@ def ask(
             stop_requested=stop.requested,
             interruptible=stop.interruptible,
             note=lambda text: print_notes([text]),
+            under_way=watch.under_way,
         )
         finding, folder = ask_campaign(campaign, question, out, how, hooks, done, expect)
     _say(finding, folder, None if no_report else write_table_page(folder))

@@ -63,7 +63,8 @@ def asked_of(campaign: Campaign, question: str) -> Asked:
             )
         common[key] = values[0]
     common = {key: v for key, v in {**common, **ask.set}.items() if key not in varied}
-    base = replace(trial.changed(common, f"{origin}: set"), figures=tuple(file.figures))
+    base = campaign.limited(trial.changed(common, f"{origin}: set"))
+    base = replace(base, figures=tuple(file.figures))
     common = {key: v for key, v in common.items() if key not in tuned}  # the base's is the present
     return Asked(question, base, common, f"{origin}: vary")
 

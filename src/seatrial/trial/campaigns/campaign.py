@@ -13,6 +13,7 @@ from ...errors import InputError, unknown
 from ...plugins import Registry
 from ...system.fault_entry import FaultEntry
 from ...system.files import FileModel, Source, find_file, read_toml, validated
+from ..files.limit_entry import LimitEntry
 from ..files.map_entry import MapEntry
 from ..files.trial import Trial, is_choice, load_trial
 from .acceptance import Acceptance, AcceptanceEntry, read_acceptance
@@ -61,6 +62,8 @@ class CampaignFile(FileModel):
     """What all cases together must show; the campaign leaves a table then."""
     samples: int = Field(default=0, ge=0)
     """With ``keep``: one case in so many keeps its folder whatever becomes of it."""
+    limit: LimitEntry = Field(default_factory=LimitEntry)
+    """Limits of the run of each case, in place of its trial's."""
     until: StoppingRule | None = None
     condition: str | None = None
     """Of a kit: what says which trials do not apply, and why; they are left out."""
@@ -82,6 +85,8 @@ class Campaign:
     """Those of ``file.trials``, in that order."""
     changes: Mapping[str, Any] = field(default_factory=dict)
     """What was set in place of what the file says."""
+    limit: Mapping[str, str] = field(default_factory=dict)
+    """Limits of each run that were set in place of those of the files."""
     left_out: Mapping[str, str] = field(default_factory=dict)
     """Why trials of the file do not apply, by their names."""
 
@@ -115,6 +120,11 @@ class Campaign:
         pairs = zip(self.trials, self.file.trials, strict=True)
         return Cases(self._block(trial, entry, rows) for trial, entry in pairs)
 
+    def limited(self, trial: Trial) -> Trial:
+        """Return one of its trials with the campaign's limits in place of the trial's."""
+        own = self.file.limit.model_dump(exclude_unset=True)
+        return trial.limited(own, f"{self.read_from.path}: limit").limited(self.limit, "--limit")
+
     @property
     def setter(self) -> str:
         """Who sets what all cases set, for messages."""
@@ -130,7 +140,7 @@ class Campaign:
         if FAULTS in keys and (lost := {row[FAULTS] for row in rows} - file.faults.keys()):
             said = unknown("name of faults", min(lost), file.faults)
             raise InputError(f"{origin}: design: {FAULTS}: {said}")
-        base = trial.changed(common, self.setter)
+        base = self.limited(trial.changed(common, self.setter))
         return Block(
             replace(base, figures=tuple(file.figures)),
             common,
@@ -144,11 +154,16 @@ class Campaign:
         )
 
 
-def load_campaign(name: str, changes: Mapping[str, Any] | None = None) -> Campaign:
+def load_campaign(
+    name: str,
+    changes: Mapping[str, Any] | None = None,
+    limit: Mapping[str, str] | None = None,
+) -> Campaign:
     """Read the campaign ``name`` (shipped, in ``harness/campaigns``, or a path).
 
     ``changes`` are set in all cases, in place of what its file sets; keys are those of
-    `Trial.changed`. Trials that do not apply, by its ``condition``, are left out.
+    `Trial.changed`. ``limit`` replaces limits of the runs. Trials that do not apply, by its
+    ``condition``, are left out.
 
     Raises InputError for anything wrong in it or in its trials, for a change of a key that has
     several values, and if no trial applies.
@@ -167,7 +182,7 @@ def load_campaign(name: str, changes: Mapping[str, Any] | None = None) -> Campai
             trials.append(load_trial(name, path.parent, chosen, "--choose"))
         except InputError as error:
             raise InputError(f"{path}: trials: {error}") from None
-    return _applying(Campaign(file, read_from, tuple(trials), changes or {}))
+    return _applying(Campaign(file, read_from, tuple(trials), changes or {}, limit or {}))
 
 
 def _with(file: CampaignFile, changes: Mapping[str, Any], path: Path) -> CampaignFile:

@@ -15,7 +15,7 @@ from typing import Any, Literal, overload
 from ...errors import InputError, SimulationError
 from ...system.system import Engine
 from ..files.trial import Trial
-from ..running.hooks import Hooks, StoppedError
+from ..running.hooks import BeyondLimitError, Hooks, InterruptedRun, StoppedError
 from ..running.measuring import Measured, measured_of
 from ..running.run import Result
 from ..running.supervision import Order, Outcome, Supervisor
@@ -139,6 +139,9 @@ class Evaluator:
                 return self.measured(number), False
             except StoppedError:
                 raise
+            except BeyondLimitError as error:
+                if not self._plan.keeps(number, passed=False):
+                    return Measured("failed", str(error)), True
             except SimulationError:
                 pass  # its process died: once more, with each call noted
         return self._recorded(number, folder), True
@@ -161,8 +164,11 @@ class Evaluator:
             number, changes = 0, self._cases.changes(number)
         with _FORKING, chdir(self._home):
             self._supervisor.begin(what, number, folder, changes)
-        while (outcome := self._supervisor.poll()) is None:
-            pass
+        try:
+            while (outcome := self._supervisor.poll()) is None:
+                pass
+        except InterruptedRun:
+            raise StoppedError("stopped before the run began; nothing was written") from None
         return outcome
 
 

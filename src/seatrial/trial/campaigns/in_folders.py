@@ -8,6 +8,7 @@ from dataclasses import asdict
 from pathlib import Path
 
 from ...system.system import Engine
+from ..records.identity import IDENTITY, Identity
 from ..running.hooks import Hooks
 from ..running.output import claim_folder, write_json
 from ..running.resuming import Note, has_index, kept_results, set_aside
@@ -15,7 +16,7 @@ from ..running.run import Result
 from ..running.supervised import Page
 from .campaign import INDEX, Campaign
 from .cases import Case, case_folders, run_cases
-from .identity import IDENTITY, Identity, changes_since, identity_of
+from .identity import changes_since, identity_of
 
 _UNWRITTEN = 0.01
 """Share of the cases in the index that may have ended since it was written, while others run.

@@ -2,98 +2,47 @@
 
 from __future__ import annotations
 
-import ast
-import os
-import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from itertools import product
 from pathlib import Path
-from typing import Any
 
-from ...errors import InputError
-from ...fmi.building.bundle import bundled
-from ...fmi.components.source import ComponentSource, find_source
-from ...kits import kits
-from ...shipped import content_of, shipped_folder
-from ...system.files import find_file, read_toml
-from ...system.parameters import split_reference
-from ...system.profile.data_sheets import data_sheets_of
-from ...system.rig import Placed, Rig
 from ...vehicle_folders import FOLDERS
 from ..files.trial import Trial, is_choice
+from ..records.deciding import deciding_files, found_by_name, named_in, our_folders
 from .campaign import Campaign
-
-_SHIPPED = ("fmus", "harness", "hil_profiles", "vehicles")
-_NAMED = re.compile(r".+?\.(?:fmu|py|toml)(?=[.:]|$)")
-"""The file in ``boat.py:Boat`` and ``boat.toml.hull``."""
-_LEFT_OUT = {"runs", "__pycache__", "node_modules", "site-packages"}
-_SKETCH = ".ino"
-_MODULE = ".py"
 
 
 def needed_files(campaign: Campaign) -> list[Path]:
     """Return a user's files and folders that a campaign needs, for another machine.
 
-    Those that decide its cases (`deciding_files`), but not those named by an absolute path, which
+    Those that decide its cases (`files_of`), but not those named by an absolute path, which
     is the same wherever it is read; with the current folder where a vehicle or profile is found by
     its name below that.
     """
     found = {
         path: None
         for trial in campaign.trials
-        for path in deciding_files(campaign, trial, is_absolute_too=False)
+        for path in files_of(campaign, trial, is_absolute_too=False)
     }
-    here = Path.cwd().resolve()
+    here, ours = Path.cwd().resolve(), our_folders()
     for trial in campaign.trials:
-        for kind, name, path in _by_name(trial.rig):
+        for kind, name, path in found_by_name(trial.rig):
             is_below = path.parent in (here / kind, here / FOLDERS / name)
-            if is_below and not name.endswith(".toml") and not _is_ours(path):
+            if is_below and not name.endswith(".toml") and not any(map(path.is_relative_to, ours)):
                 found[here] = None
     return list(found)
 
 
-def deciding_files(campaign: Campaign, trial: Trial, *, is_absolute_too: bool = True) -> list[Path]:
+def files_of(campaign: Campaign, trial: Trial, *, is_absolute_too: bool = True) -> list[Path]:
     """Return the user's files that decide the cases of one of a campaign's trials, and folders.
 
-    The campaign, the trial, its rigs by all choices that cases make, vehicles, profiles and their
-    data sheets, components with the modules that they import, FMUs; and files and folders that a
-    text in one of these names by a path from its own folder, of a sketch its whole folder. Shipped
-    files, and those of kits, are not among them.
+    The campaign, and what decides the trial by all choices that cases make (`deciding_files`),
+    without the campaign's other trials.
     """
     others = {each.read_from.path.resolve() for each in campaign.trials if each is not trial}
-    pending = [campaign.read_from.path.resolve()]
-    pending += _named_in(campaign.changes, Path.cwd(), is_absolute_too)
-    for chosen in _by_choices(campaign, trial):
-        scenario = [] if chosen.scenario is None else [chosen.scenario.read_from]
-        sources = [chosen.read_from, chosen.rig.read_from, *chosen.rig.sources, *scenario]
-        pending += [source.path.resolve() for source in sources]
-        pending += [path for _, _, path in _by_name(chosen.rig)]
-        for placed in chosen.rig.components.values():
-            pending += _of_code(placed)
-    found: dict[Path, None] = {}
-    while pending:
-        path = pending.pop()
-        if path not in found and path not in others and not _is_ours(path):
-            found[path] = None
-            pending += _named_by(path, is_absolute_too)
-    return list(found)
-
-
-def _is_ours(path: Path) -> bool:
-    """Say if a file is shipped, or of a kit."""
-    folders = [shipped_folder(each) for each in _SHIPPED]
-    folders += [content_of(kit) for kit in kits().found]
-    return any(path.is_relative_to(folder.resolve()) for folder in folders)
-
-
-def files_in(top: Path) -> Iterator[Path]:
-    """Yield the files of a user's folder, but not what is hidden, and what runs have left."""
-    for folder, folders, names in os.walk(top):
-        folders[:] = sorted(f for f in folders if f not in _LEFT_OUT and not f.startswith("."))
-        if "campaign.json" in names or "manifest.json" in names:  # what runs have left
-            folders.clear()
-            continue
-        yield from (Path(folder, name) for name in sorted(names) if not name.startswith("."))
+    above = [campaign.read_from.path, *named_in(campaign.changes, Path.cwd(), is_absolute_too)]
+    chosen = _by_choices(campaign, trial)
+    return deciding_files(chosen, above, others, is_absolute_too=is_absolute_too)
 
 
 def _by_choices(campaign: Campaign, trial: Trial) -> Iterator[Trial]:
@@ -106,66 +55,3 @@ def _by_choices(campaign: Campaign, trial: Trial) -> Iterator[Trial]:
             for row in sorted(drawn):
                 changes = dict(zip(values, picked, strict=True)) | dict(row)
                 yield block.base.changed(changes, block.where) if changes else block.base
-
-
-def _by_name(rig: Rig) -> Iterator[tuple[str, str, Path]]:
-    """Yield kind, name and file of vehicles, profiles and data sheets of a rig's components."""
-    for placed in rig.components.values():
-        folder = placed.scope.read_from.path.parent
-        if placed.entry.parameters:
-            name, _ = split_reference(placed.entry.parameters, placed.entry.fmu)
-            yield "vehicles", name, find_file("vehicles", name, folder).resolve()
-        own, _, section = (placed.entry.profile or "").rpartition(":")
-        if profile := own or (section and placed.scope.file.profile):
-            file = find_file("hil_profiles", profile, folder).resolve()
-            yield "hil_profiles", profile, file
-            for sheet in data_sheets_of(file):
-                yield "hil_profiles", sheet.name, sheet.resolve()
-
-
-def _of_code(placed: Placed) -> Iterator[Path]:
-    """Yield the file of an FMU or table, or those of a user's component, with what it imports."""
-    try:
-        source = find_source(placed.entry.fmu, placed.scope.read_from.path.parent)
-        if not isinstance(source, ComponentSource):
-            yield source.resolve()
-        elif source.folder is not None:
-            folder = source.folder.resolve()
-            read = (path.resolve() for path in bundled(source).read)
-            yield from (path for path in read if path.is_relative_to(folder))
-    except InputError:  # of a component that cannot be built: the run says it
-        return
-
-
-def _named_by(path: Path, is_absolute_too: bool) -> Iterator[Path]:
-    """Yield what a file names by a path from its folder."""
-    if path.suffix == ".toml" and path.is_file():
-        yield from _named_in(read_toml(path)[0], path.parent, is_absolute_too)
-    elif path.suffix == _MODULE and path.is_file():
-        try:
-            nodes = ast.walk(ast.parse(path.read_bytes()))
-        except (SyntaxError, ValueError):
-            return
-        constants = [node.value for node in nodes if isinstance(node, ast.Constant)]
-        yield from _named_in(constants, path.parent, is_absolute_too)
-
-
-def _named_in(content: Any, folder: Path, is_absolute_too: bool) -> Iterator[Path]:
-    for text in _texts(content):
-        match = _NAMED.match(text)
-        name = match[0] if match else text
-        try:
-            named = (folder / name).resolve()
-            is_there = Path(name).name not in ("", ".", "..") and named.exists()
-        except (OSError, ValueError):  # of a text that can be no path
-            continue
-        if is_there and (is_absolute_too or not Path(name).is_absolute()):
-            yield named.parent if named.suffix == _SKETCH else named
-
-
-def _texts(content: Any) -> Iterator[str]:
-    if isinstance(content, str):
-        yield content
-    elif isinstance(content, (Mapping, list)):
-        for value in content.values() if isinstance(content, Mapping) else content:
-            yield from _texts(value)

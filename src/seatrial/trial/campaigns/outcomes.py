@@ -13,12 +13,12 @@ from urllib.parse import quote
 from ...errors import InputError
 from ...model.readable import number
 from ..records import run_schema
+from ..records.identity import IDENTITY
 from ..records.run_schema import checked_json
 from ..reports.report import REPORT
 from .campaign import INDEX
 from .columns import settings_in
 from .distributions import number_and_unit
-from .identity import IDENTITY
 from .table import RESULTS, read_rows, units_of
 
 SEED = "seed"

@@ -132,7 +132,7 @@ def _rerun(folder: Path, index: dict[str, Any], *, is_answer: bool) -> str:
     if "file" not in index:
         return ""
     words = ["seatrial", "campaign", "rerun", index["file"], "--engine", index["engine"]]
-    return shlex.join([*words, *(["--asked", folder.name] if is_answer else []), "--case"]) + " "
+    return shlex.join([*words, "--asked" if is_answer else "--of", folder.name, "--case"]) + " "
 
 
 def _drawings(folder: Path, answer: Finding) -> list[Markup]:

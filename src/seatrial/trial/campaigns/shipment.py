@@ -13,9 +13,10 @@ from functools import lru_cache
 from pathlib import Path, PurePosixPath
 
 from ...errors import InputError
+from ..records.deciding import files_in
 from ..records.program import program
 from .campaign import Campaign, load_campaign
-from .needed import files_in, needed_files
+from .needed import needed_files
 
 MOST_BYTES = 200_000_000
 
@@ -34,7 +35,8 @@ def packed(campaign: Campaign) -> bytes:
     place = here.relative_to(top).as_posix() if top and here.is_relative_to(top) else "."
     stream, total = io.BytesIO(), 0
     with tarfile.open(fileobj=stream, mode="w", format=tarfile.PAX_FORMAT) as archive:
-        said = (json.dumps(program()), name, place, json.dumps(dict(campaign.changes)))
+        settings = (json.dumps(dict(each)) for each in (campaign.changes, campaign.limit))
+        said = (json.dumps(program()), name, place, *settings)
         _add(archive, "campaign", "\n".join(said).encode())
         for path in files_in(top) if top is not None else ():
             assert top is not None
@@ -68,14 +70,14 @@ def _unpacked(_sha256: str, data: bytes) -> tuple[Campaign, Path]:
     folder = Path(_folders[-1].name)
     with tarfile.open(fileobj=io.BytesIO(data)) as archive:
         archive.extractall(folder, filter="data")
-    packer, name, place, changes = (folder / "campaign").read_text("utf-8").split("\n")
+    packer, name, place, changes, limit = (folder / "campaign").read_text("utf-8").split("\n")
     _refuse_other(json.loads(packer))
     top = folder / "files"
     home = top / place
     home.mkdir(parents=True, exist_ok=True)
     with chdir(home):
         path = str(top / name) if name.endswith(".toml") else name
-        return load_campaign(path, json.loads(changes)), home
+        return load_campaign(path, json.loads(changes), json.loads(limit)), home
 
 
 def _refuse_other(packer: dict[str, str]) -> None:

@@ -6,6 +6,7 @@ import hashlib
 import json
 import math
 import shutil
+import time
 from collections import deque
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, wait
@@ -18,6 +19,7 @@ from typing import Any, get_args
 from ...errors import InputError, unknown
 from ...shipped import provided_folders
 from ...system.system import Engine
+from ..records.identity import IDENTITY, Changes, Identity
 from ..records.run_schema import CAMPAIGN, checked_json
 from ..running.hooks import Hooks
 from ..running.measuring import Measured
@@ -33,13 +35,15 @@ from .columns import columns_of
 from .ended import Ended
 from .ended_log import ENDED_LOG, EndedLog, ended_cases
 from .evaluator import Keep, Plan
-from .identity import IDENTITY, Changes, Identity, changes_since, identity_of
+from .identity import changes_since, identity_of
 from .sampled_checks import check
 from .shipment import unpack_folder
 from .table import RESULTS, Tables, arrow, read_rows
 from .workers import Here, Task, Workers
 
 Done = Callable[[Case, Ended], None]
+_UNDECIDING = {"title", "keep", "samples", "ask", "map", "criteria", "limit"}
+"""Keys of a campaign that change no run that comes to an end."""
 _SLICE_S = 0.2
 """A stop is noticed within this time."""
 
@@ -186,6 +190,8 @@ class Sweep:
         self._cases, self._ends = cases, is_enough
         self._workers, self._folder, self._hooks = workers, folder, hooks
         self._running: dict[Future[list[Ended | None]], Task] = {}
+        self._begun: dict[Future[list[Ended | None]], float] = {}
+        """When tasks were first seen to run, monotonic wall time, s."""
         self._again: deque[Task] = deque()
         self._early: dict[int, Ended] = {}
         self._stopping = False
@@ -217,6 +223,7 @@ class Sweep:
             for ended in self._ready():
                 log.add(ended)
                 self._early[ended.number] = ended
+            self._say_longest()
         for number in sorted(self._early):  # of a stop: behind a case that has not ended
             if self.summary.enough:
                 self._drop(self._early[number])
@@ -231,6 +238,7 @@ class Sweep:
             for future in list(self._running):
                 if future.cancel() or self.summary.enough or self._hooks.stop_requested() > 1:
                     del self._running[future]
+                    self._begun.pop(future, None)
             return
         places = self._workers.places - len(self._running)
         for _ in range(places):
@@ -245,6 +253,7 @@ class Sweep:
         ready, _ = wait(self._running, _SLICE_S, FIRST_COMPLETED)
         for future in ready:
             task = self._running.pop(future)
+            self._begun.pop(future, None)
             if (error := future.exception()) is not None:
                 if not self._workers.lost(error):
                     raise error
@@ -260,6 +269,16 @@ class Sweep:
                 self._wall = 0.9 * self._wall + 0.1 * wall if known else wall
                 yield ended
 
+    def _say_longest(self) -> None:
+        now = time.monotonic()
+        for future in self._running:
+            if future.running():
+                self._begun.setdefault(future, now)
+        if self._begun:
+            oldest = min(self._begun, key=self._begun.__getitem__)
+            number, wall = self._running[oldest][0], now - self._begun[oldest]
+            self._hooks.under_way(self.summary.ended + len(self._early), number, wall)
+
     def _drop(self, ended: Ended) -> None:
         """Remove what a case has left that ran though those before it were enough."""
         if ended.folder:
@@ -270,7 +289,7 @@ def index_of(
     campaign: Campaign, identity: Identity, engine: Engine, count: int, question: Any = None
 ) -> dict[str, Any]:
     """Return the index of a campaign's folder, or of a question's, without its cases."""
-    file = campaign.file.model_dump(exclude={"title", "keep", "samples", "ask", "map", "criteria"})
+    file = campaign.file.model_dump(exclude=_UNDECIDING)
     asked = [] if question is None else [question]
     said = json.dumps([engine, file, *asked], default=str)
     drawn = campaign.file.map if question is None else None

@@ -54,7 +54,7 @@ class Here:
         def asked() -> int:
             return 2 if self._closing else hooks.stop_requested()
 
-        own = Hooks(stop_requested=asked, hang_after=hooks.hang_after)
+        own = Hooks(stop_requested=asked)
         self._evaluators = [Evaluator(cases, plan, own) for _ in range(count)]
         self._idle: SimpleQueue[Evaluator] = SimpleQueue()
         for evaluator in self._evaluators:

@@ -208,6 +208,11 @@ class Trial:
         entry = validated(RealTimeEntry, content, Path(origin))
         return replace(self, file=self.file.model_copy(update={"real_time": entry}))
 
+    def limited(self, given: Mapping[str, Any], origin: str) -> Trial:
+        """Return the trial with limits of its run replaced. Raises InputError."""
+        limit = self.file.limit.with_(given, origin)
+        return replace(self, file=self.file.model_copy(update={"limit": limit}))
+
     def changed(self, changes: Mapping[str, Any], origin: str) -> Trial:
         """Return the trial with settings changed: ``component.port``, or a key of the trial.
 

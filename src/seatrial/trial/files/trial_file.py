@@ -11,6 +11,7 @@ from ...sim.clock import OverrunPolicy
 from ...system.fault_entry import FaultEntry
 from ...system.files import FileModel
 from ..criteria.verdict import Expectation
+from .limit_entry import LimitEntry
 from .seabed_entry import SeabedEntry
 from .surroundings import CurrentEntry, SeaEntry, WindEntry
 from .utc import Utc
@@ -113,6 +114,7 @@ class TrialFile(FileModel):
     set: dict[str, Any] = Field(default_factory=dict)
     record: RecordEntry = Field(default_factory=RecordEntry)
     real_time: RealTimeEntry | None = None
+    limit: LimitEntry = Field(default_factory=LimitEntry)
     criteria: list[CriterionEntry] = Field(default_factory=list)
     plots: list[PlotEntry] = Field(default_factory=list)
     events: list[EventEntry] = Field(default_factory=list)

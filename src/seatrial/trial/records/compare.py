@@ -15,8 +15,11 @@ from rich.table import Table
 from ...model.component import NS
 from ...model.readable import number
 from ..criteria.expressions import FloatArray
+from .identity import IDENTITY
 from .run_folder import SIGNALS, Run, load_run
 
+_SHOWN_DIGITS = 12
+"""Of a hash."""
 _SETTINGS = ("seatrial", "engine", "variant", "seed", "start", "stop", "step", "algorithm")
 
 
@@ -190,6 +193,8 @@ def _gap(a: FloatArray, b: FloatArray) -> FloatArray:
 
 def _changes(a: dict[str, Any], b: dict[str, Any]) -> Iterator[Change]:
     settings_a, settings_b = _settings(a), _settings(b)
+    if IDENTITY in a and IDENTITY in b:
+        settings_a, settings_b = settings_a | _content(a), settings_b | _content(b)
     for name in dict.fromkeys([*settings_a, *settings_b]):
         if settings_a.get(name) != settings_b.get(name):
             yield Change(name, settings_a.get(name), settings_b.get(name))
@@ -202,6 +207,14 @@ def _settings(manifest: dict[str, Any]) -> dict[str, Any]:
         for parameter, entry in component["parameters"].items():
             found[f"{name}.{parameter}"] = entry["value"]
     return found
+
+
+def _content(manifest: dict[str, Any]) -> dict[str, str]:
+    """Return versions and hashes of what has decided a run."""
+    identity = manifest[IDENTITY]
+    files = [each.items() for each in identity["files"].values()]
+    hashes = {f"{name} (file)": sha256[:_SHOWN_DIGITS] for each in files for name, sha256 in each}
+    return {f"{name} (program)": said for name, said in identity["program"].items()} | hashes
 
 
 def _shown(value: Any) -> str:

@@ -15,6 +15,7 @@ from ...system.part import Part
 from ...system.system import Engine, System
 from ...system.values import storable
 from ..files.trial import Trial
+from .identity import IDENTITY, identity_of_run
 from .program import versions
 
 _TYPES = {float: "Real", int: "Integer", bool: "Boolean", str: "String", bytes: "Binary"}
@@ -26,6 +27,7 @@ def manifest(trial: Trial, system: System, engine: Engine) -> dict[str, Any]:
         "format": 1,
         "seatrial": __version__,
         "versions": versions(),
+        IDENTITY: identity_of_run(trial).content(),
         "trial": {**_file(trial.read_from), "title": trial.file.title},
         "rig": {**_file(trial.rig.read_from), "title": trial.rig.file.title},
         **_composition(trial, system),

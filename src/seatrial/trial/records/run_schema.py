@@ -158,6 +158,11 @@ _Connection = (
 """From, to; factor and offset; mapping, pairs of values. JSON has lists only."""
 
 
+class _Identity(_Entry):
+    program: dict[str, str]
+    files: dict[str, dict[str, str]]
+
+
 class Manifest(_Entry):
     """``manifest.json``."""
 
@@ -175,6 +180,7 @@ class Manifest(_Entry):
     error: str | None = None
     step: Number | None = None
     versions: dict[str, Any] = Field(default_factory=dict)
+    identity: _Identity | None = None
     plots: list[_Plot] = Field(default_factory=list)
     events: list[Any] = Field(default_factory=list)
     faults: list[Any] = Field(default_factory=list)
@@ -260,11 +266,6 @@ class _Case(_Entry):
     status: str
     passed: bool
     verdicts: list[_CaseVerdict]
-
-
-class _Identity(_Entry):
-    program: dict[str, str]
-    files: dict[str, dict[str, str]]
 
 
 class _Accepted(_Entry):

@@ -6,7 +6,7 @@ import ctypes
 import math
 import mmap
 from collections.abc import Callable, Sequence
-from typing import Any, cast
+from typing import Any, NamedTuple, cast
 
 from ...fmi.instance import Instance, Reader, Writer
 from ...sim.compiled.marks import Marks
@@ -29,16 +29,30 @@ _CALLS = {
 _KINDS = {name: number for number, name in enumerate(_CALLS)}
 _WORDS = list(_CALLS.values())
 _ENDS = {_KINDS["terminate"], _KINDS["free"], _KINDS["free_state"]}
-_ASKED, _CALL, _TIME, _POINTS, _ORDERS, _PHASE, _END, _DEVICES, _LIMITS = range(9)
-"""Cells: the first three as `Marks` has them. From the last one on: seconds, as doubles."""
+_ASKED, _CALL, _TIME, _POINTS, _ORDERS, _PHASE, _END, _DEVICES, _RUNS, _BEFORE, _LIMITS = range(11)
+"""Cells: the first three as `Marks` has them. From the last one on: `Limits`, as doubles."""
 
-Limits = tuple[float, float, float]
-"""Wall time of a call at the start, in a step and at the end, s; infinite where there is none."""
-NO_LIMITS: Limits = (math.inf, math.inf, math.inf)
-AT_ANY_PACE: Limits = (60.0, 60.0, 60.0)
-IN_REAL_TIME: Limits = (60.0, 2.0, 10.0)
-STARTS, STEPS = 1, 2
-HUNG, ASKED_IN_VAIN = 1, 2
+
+class Limits(NamedTuple):
+    """Limits of a run; infinite where there is none."""
+
+    start: float
+    """Wall time of a call at the start without progress, s."""
+    step: float
+    """The same in a step."""
+    end: float
+    """The same at the end."""
+    wall: float = math.inf
+    """Wall time of the run, s."""
+    memory: float = math.inf
+    """Resident memory beyond what the process had before the run, bytes."""
+
+
+NO_LIMITS = Limits(math.inf, math.inf, math.inf)
+AT_ANY_PACE = Limits(60.0, 60.0, 60.0)
+IN_REAL_TIME = Limits(60.0, 2.0, 10.0)
+STARTS, STEPS, LOADS = 1, 2, 3
+HUNG, ASKED_IN_VAIN, BEYOND_WALL, BEYOND_MEMORY = 1, 2, 3, 4
 """Why the keeper has ended the process of a run."""
 
 
@@ -63,12 +77,13 @@ class CallTrace:
     orders = _cell(_ORDERS, "How many orders to stop the supervisor has sent.")
     end = _cell(_END, "Why the keeper has ended the process, 0 if it has not.")
     devices = _cell(_DEVICES, "Whether the run may reach devices.")
+    runs = _cell(_RUNS, "How many runs have begun and ended: odd while one goes on.")
+    before = _cell(_BEFORE, "Resident memory of the process before its run, bytes.")
 
     @property
     def limits(self) -> Limits:
-        """How long a call may take before its process is taken for hung."""
-        start, step, end = self._times[_LIMITS : _LIMITS + len(NO_LIMITS)]
-        return start, step, end
+        """What a run may take before its process is ended."""
+        return Limits(*self._times[_LIMITS : _LIMITS + len(NO_LIMITS)])
 
     @limits.setter
     def limits(self, limits: Limits) -> None:
@@ -84,7 +99,7 @@ class CallTrace:
 
     @property
     def phase(self) -> int:
-        """What goes on that may hang: `STARTS`, which ends are too, or `STEPS`; 0 for nothing."""
+        """What goes on that may hang: `LOADS`, `STARTS` (ends too) or `STEPS`; 0 for nothing."""
         return self.cells[_PHASE]
 
     @phase.setter
@@ -98,14 +113,14 @@ class CallTrace:
     def limit(self, held: bool) -> float:
         """Return how long there may be no progress now, s; ``held``: links hold safe states."""
         code, phase = self.cells[_CALL], self.cells[_PHASE]
-        start, step, end = self.limits
+        start, step, end, *_ = self.limits
         if not phase:
             return end if held else math.inf
         if code and (code - 1) % len(_WORDS) in _ENDS:
             return end
         if phase == STEPS:
             return step
-        return start if code or held else math.inf
+        return start if code or held or phase == STARTS else math.inf
 
     def entry(self, names: Sequence[str]) -> tuple[str, str]:
         """Return the component in a call and the call, with its time; two empty texts for none."""

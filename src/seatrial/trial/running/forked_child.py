@@ -13,7 +13,7 @@ from contextlib import contextmanager, suppress
 from typing import Any
 
 from ...fmi.isolation.orphan import end_with
-from .call_trace import STARTS, STEPS, CallTrace
+from .call_trace import LOADS, STARTS, STEPS, CallTrace
 from .link import Link
 
 ASKING = [
@@ -41,6 +41,8 @@ class Child:
 
     def __init__(self, link: Link, trace: CallTrace, parent: int, alarm: int) -> None:
         self.link, self.call_trace = link, trace
+        self.loads = True
+        """Whether components are being loaded, which may take any time; they start behind it."""
         self._parent, self._own = parent, os.getpid()
         self._may_hang = self._interrupted = False
         self._orders = self._requests = 0
@@ -66,7 +68,7 @@ class Child:
     def interruptible(self) -> Iterator[None]:
         """Let an urgent stop end what is done inside."""
         self._may_hang = True
-        self.call_trace.phase = STARTS
+        self.call_trace.phase = LOADS if self.loads else STARTS
         try:
             self._interrupt()
             yield

@@ -23,6 +23,14 @@ class StoppedError(SimulationError):
     """A run was stopped before it began: it left nothing."""
 
 
+class InterruptedRun(KeyboardInterrupt):
+    """The process of a run was interrupted before the run began: it left nothing."""
+
+
+class BeyondLimitError(SimulationError):
+    """A run went beyond one of its limits, and left nothing."""
+
+
 class Observer(Protocol):
     """Looks at a run between its steps, where the run is: in the process of its own."""
 
@@ -48,8 +56,14 @@ class Hooks:
 
     building: Callable[[str], None] = lambda _: None
     progress: Progress = lambda _passed, _whole: None
+    under_way: Callable[[int, int, float], None] = lambda _ended, _case, _wall: None
+    """Called now and then while cases of a campaign run: how many have ended, the number from 0 of
+    the case that has been running longest, and its wall time so far, s."""
     assembled: Callable[[System, dict[str, Any]], None] = lambda _system, _manifest: None
-    """Called with the rig and the run's manifest, before the components are started."""
+    """Called with the rig and the run's manifest, before the components are started.
+
+    Where nothing is written the manifest has the names of the components alone.
+    """
     begun: Callable[[], None] = lambda: None
     """Called when all has started, and steps follow."""
     claimed: Callable[[Path], None] = lambda _: None
@@ -67,9 +81,6 @@ class Hooks:
     observer: Observer | None = None
     keep_going: bool = False
     """Whether a run that may reach devices goes on without a link that it has lost."""
-    hang_after: float | None = None
-    """Wall time without progress, s, after which a call is taken for hung; 0: never. None: 2 s in
-    the steps of a run in real time and 10 s at its end, else 60 s."""
 
     def refuse_if_stopped(self) -> None:
         """Raise StoppedError if a stop was requested before anything was written."""

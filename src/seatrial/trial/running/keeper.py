@@ -25,8 +25,9 @@ from pathlib import Path
 from typing import NoReturn
 
 from ...links.safe_state_keeper import Process, SafeStates
-from .call_trace import ASKED_IN_VAIN, HUNG, CallTrace
+from .call_trace import ASKED_IN_VAIN, BEYOND_MEMORY, BEYOND_WALL, HUNG, CallTrace
 from .forked_child import ASKING
+from .memory import resident_bytes
 
 ASKED_S = 4.0
 """Wall time from the first request to stop until the links must have got their safe states."""
@@ -95,24 +96,38 @@ class Keeper:
 
 
 class _Watch:
-    """Says whether the run has not got on for longer than it may."""
+    """Says which of its limits the run is beyond."""
 
-    def __init__(self, trace: CallTrace) -> None:
-        self._trace = trace
+    def __init__(self, trace: CallTrace, run: int) -> None:
+        self._trace, self._run = trace, run
         self._before: object = None
-        self._looked, self._idle = time.monotonic(), 0.0
+        self._runs = 0
+        self._looked, self._idle, self._wall = time.monotonic(), 0.0, 0.0
 
-    def is_hung(self, states: SafeStates, run: int) -> bool:
-        now, progress = time.monotonic(), (self._trace.progress(), states.waits)
-        self._idle += min(now - self._looked, _MOST_COUNTED_S)
-        self._looked = now
-        if progress != self._before:
-            self._before, self._idle = progress, 0.0
-        if self._idle <= self._trace.limit(states.held):
-            return False
-        if not self._trace.devices and _is_suspended(run):
+    def beyond(self, states: SafeStates) -> int:
+        """Return why the process is to be ended, 0 if it is not."""
+        now, trace = time.monotonic(), self._trace
+        passed, self._looked = min(now - self._looked, _MOST_COUNTED_S), now
+        progress = (trace.progress(), states.waits)
+        self._idle = self._idle + passed if progress == self._before else 0.0
+        self._before = progress
+        if trace.runs != self._runs:
+            self._runs, self._wall = trace.runs, 0.0
+        limits, goes_on = trace.limits, self._runs % 2
+        is_hung = self._idle > trace.limit(states.held)
+        is_timed = goes_on and math.isfinite(limits.wall)
+        if (is_hung or is_timed) and not trace.devices and _is_suspended(self._run):
             self._idle = 0.0  # a person who suspends a simulation goes on with it
-        return self._idle > 0.0
+            return 0
+        self._wall += passed
+        if is_timed and self._wall > limits.wall:
+            return BEYOND_WALL
+        if is_hung:
+            return HUNG
+        if goes_on and math.isfinite(limits.memory):
+            more = resident_bytes(self._run) - trace.before
+            return BEYOND_MEMORY if more > limits.memory else 0
+        return 0
 
 
 @dataclass
@@ -155,7 +170,7 @@ def _begin(
 def _keep(
     run: int, states: SafeStates, trace: CallTrace, alarm: _Alarm, control: socket.socket
 ) -> None:
-    process, watch = Process(run), _Watch(trace)
+    process, watch = Process(run), _Watch(trace, run)
     asked = supervised_until = math.inf
     supervised = lives = True
     while supervised or lives or states.held:
@@ -172,8 +187,8 @@ def _keep(
         if alarm.has_rung() and not trace.asked:
             trace.asked = 1  # the run itself cannot say so in code that holds Python's lock
         asked = min(asked, now) if trace.asked else math.inf
-        if watch.is_hung(states, run) and lives:
-            end = HUNG
+        if (beyond := watch.beyond(states)) and lives:
+            end = beyond
         elif states.held and (now > asked + ASKED_S or now > supervised_until + _IN_ORDER_S):
             end = ASKED_IN_VAIN
         else:

@@ -59,6 +59,7 @@ def measure_trial(trial: Trial, *, engine: Engine = "fmu", hooks: Hooks | None =
     with hooks.interruptible():
         prepared = prepare(trial, engine, hooks)
     try:
+        hooks.assembled(prepared.system, {"components": dict.fromkeys(prepared.system.parts)})
         with own_generators(prepared.system.seed):
             found = _stepped(prepared, hooks)
     except BaseException:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import select
+import time
 from collections import deque
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
@@ -16,7 +17,7 @@ from ...model.component import seconds
 from ...system.system import Engine
 from ..files.trial import Trial
 from .forked import SLICE_MS
-from .hooks import Hooks, StoppedError
+from .hooks import BeyondLimitError, Hooks, InterruptedRun, StoppedError
 from .run import Result
 from .supervised import Page, no_page
 from .supervision import Order, Outcome, Supervisor
@@ -52,6 +53,8 @@ class Pool:
         self._durations = [seconds(trial.stop_ns - trial.start_ns) for trial in trials]
         self._alone: set[int] = set()
         self._busy: dict[int, Supervisor] = {}
+        self._begun: dict[int, float] = {}
+        """When each order was given, monotonic wall time, s."""
         self._stopping = False
         slots = range(max(1, min(jobs, len(trials))))
         own = [replace(self._hooks, progress=partial(self._progress, slot)) for slot in slots]
@@ -91,6 +94,7 @@ class Pool:
         Once a stop is requested no other one begins. Raises what `Supervisor.run` raises.
         """
         waiting, results = deque(folders), dict[int, Result]()
+        ended = len(self._durations) - len(folders)
         self._passed = [0.0 if n in folders else d for n, d in enumerate(self._durations)]
         while (waiting and not self._stopping) or self._busy:
             while self._idle and (number := self._next(waiting)) is not None:
@@ -99,7 +103,9 @@ class Pool:
                 if isinstance(outcome, StoppedError):
                     self._stopping = True
                     continue
-                if isinstance(outcome, Exception):
+                if isinstance(outcome, BeyondLimitError):
+                    results[number] = Result(folders[number], "failed", str(outcome), [], [])
+                elif isinstance(outcome, Exception):
                     if number not in results:
                         raise outcome
                     _note_page(results[number], outcome)
@@ -110,7 +116,9 @@ class Pool:
                     if self._has_pages:
                         self._begin("report", number, outcome.folder)
                         continue
+                ended += 1
                 yield number, results.pop(number)
+            self._say_longest(ended)
 
     # ------------------------------------------------------------------ inside
 
@@ -127,7 +135,7 @@ class Pool:
 
     def _begin(self, what: Order, number: int, folder: Path | None) -> None:
         supervisor = self._idle.pop()
-        self._busy[number] = supervisor
+        self._busy[number], self._begun[number] = supervisor, time.monotonic()
         supervisor.begin(what, number, folder)
 
     def _outcomes(self) -> Iterator[tuple[int, Outcome | Exception]]:
@@ -141,12 +149,19 @@ class Pool:
         for number, supervisor in list(self._busy.items()):
             try:
                 outcome: Outcome | Exception | None = supervisor.poll(wait=False)
+            except InterruptedRun:
+                outcome = StoppedError("stopped before the run began; nothing was written")
             except Exception as error:
                 outcome = error
             if outcome is not None:
                 del self._busy[number]
                 self._idle.append(supervisor)
                 yield number, outcome
+
+    def _say_longest(self, ended: int) -> None:
+        if self._busy:
+            oldest = next(iter(self._busy))
+            self._hooks.under_way(ended, oldest, time.monotonic() - self._begun[oldest])
 
     def _progress(self, slot: int, passed: float, _whole: float) -> None:
         for number, supervisor in self._busy.items():

@@ -11,6 +11,7 @@ from ...fmi.components.source import ComponentSource, find_source
 from ...kits import is_ours
 from ...system.system import Engine
 from ..files.trial import Trial
+from ..records.program import program
 
 _OF_FMUS = ("seatrial.fmi.building.export", "seatrial.fmi.loading.load")
 
@@ -18,7 +19,8 @@ _OF_FMUS = ("seatrial.fmi.building.export", "seatrial.fmi.loading.load")
 def preload(trials: Sequence[Trial], engine: Engine) -> None:
     """Import what the components of some trials need; of seatrial's own modules alone.
 
-    What others wrote is imported where it can do no harm, in the copy.
+    What others wrote is imported where it can do no harm, in the copy. The program's identity is
+    hashed once for all copies, too.
     """
     modules = set(() if engine == "direct" else _OF_FMUS)
     for trial in trials:
@@ -29,3 +31,4 @@ def preload(trials: Sequence[Trial], engine: Engine) -> None:
                     modules.add(source.module)
     for module in sorted(modules):
         importlib.import_module(module)
+    program()

@@ -5,7 +5,8 @@ from __future__ import annotations
 import gc
 import os
 import traceback
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
@@ -17,6 +18,7 @@ from .forked_child import Child, forward_output
 from .hooks import Hooks, Observer
 from .link import Frame
 from .measuring import measure_trial
+from .memory import resident_bytes
 from .run import Result, check_trial, run_trial
 
 Page = Callable[[Path], object]
@@ -47,14 +49,18 @@ def serve(
     while (orders := child.link.receive()) is not None:
         for order in orders:
             os.chdir(here)  # a component may have left it
-            measures = order[0] == "measure"
-            hooks = _unnoted(child) if measures else _hooks(child, observer, keep_going)
-            child.link.send(*_carried_out(order, trials, engine, page, hooks))
+            with _limited(child, order[0]):
+                done = _carried_out(order, trials, engine, page, (child, observer, keep_going))
+            child.link.send(*done)
             gc.collect(0)  # a trial's objects refer to each other: thousands of them would pile up
 
 
 def _carried_out(
-    order: Frame, trials: Sequence[Trial], engine: Engine, page: Page, hooks: Hooks
+    order: Frame,
+    trials: Sequence[Trial],
+    engine: Engine,
+    page: Page,
+    seen: tuple[Child, Observer | None, bool],
 ) -> Frame:
     what, number, folder, changes = order
     try:
@@ -63,6 +69,8 @@ def _carried_out(
             page(out)
             return ["done", {}]
         trial = trials[number] if changes is None else trials[number].changed(*changes)
+        is_noted = what != "measure" or trial.file.limit.is_of_run
+        hooks = _hooks(*seen) if is_noted else _unnoted(seen[0])
         if what == "check":
             return ["done", {"alone": check_trial(trial, engine, hooks)}]
         if what == "measure":
@@ -81,15 +89,39 @@ def _carried_out(
         return ["error", SimulationError.__name__, f"an error of seatrial itself:\n{text}"]
 
 
+@contextmanager
+def _limited(child: Child, what: str) -> Iterator[None]:
+    """Let the keeper see that a run goes on, which has limits."""
+    trace = child.call_trace
+    is_run = what in ("measure", "run")
+    trace.before = resident_bytes() if is_run else 0
+    trace.runs += is_run
+    child.loads = True
+    try:
+        yield
+    finally:
+        trace.runs += is_run
+
+
 def _unnoted(child: Child) -> Hooks:
     """Return hooks without a note of each call: who dies is run again, with them."""
-    return Hooks(stop_requested=child.asked, interruptible=child.interruptible, begun=child.begun)
+
+    def assembled(_system: System, _manifest: object) -> None:
+        child.loads = False
+
+    return Hooks(
+        assembled=assembled,
+        stop_requested=child.asked,
+        interruptible=child.interruptible,
+        begun=child.begun,
+    )
 
 
 def _hooks(child: Child, observer: Observer | None, keep_going: bool) -> Hooks:
     link, trace = child.link, child.call_trace
 
     def assembled(system: System, manifest: dict[str, Any]) -> None:
+        child.loads = False
         for number, part in enumerate(system.parts.values()):
             part.instance = trace.traced(part.instance, number)
         link.send("assembled", manifest)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import logging
-import math
 import os
 import sys
 from collections.abc import Mapping, Sequence
@@ -19,12 +18,21 @@ from ...links.hardware import devices_allowed
 from ...system.system import Engine
 from ..criteria.predicates import Limit
 from ..criteria.verdict import Verdict
+from ..files.limit_entry import NONE, LimitEntry
 from ..files.trial import Trial
 from ..records.ending import is_whole
 from ..records.run_folder import MANIFEST, written_status
-from .call_trace import AT_ANY_PACE, HUNG, IN_REAL_TIME, CallTrace, Limits
+from .call_trace import (
+    AT_ANY_PACE,
+    BEYOND_MEMORY,
+    BEYOND_WALL,
+    HUNG,
+    IN_REAL_TIME,
+    CallTrace,
+    Limits,
+)
 from .forked import Forked
-from .hooks import Hooks, StoppedError
+from .hooks import BeyondLimitError, Hooks, InterruptedRun, StoppedError
 from .keeper import ASKED_S
 from .link import Frame
 from .measuring import Measured, measure_trial
@@ -38,6 +46,7 @@ Order = Literal["check", "measure", "run", "report"]
 Outcome = Result | Measured | bool
 Changes = tuple[Mapping[str, Any], str]
 """Settings, and who says so."""
+_LOGGER = logging.getLogger(__name__)
 _IN_PROCESS = not hasattr(os, "fork")
 """Windows cannot copy a process: trials run in this one there."""
 
@@ -61,7 +70,7 @@ class Supervisor:
         self._trials, self._engine, self._hooks = trials, engine, hooks or Hooks()
         self._page, self._alike = page, trials if alike is None else alike
         self._forked: Forked | None = None
-        self._busy = self._is_free = False
+        self._busy = self._is_free = self._is_warned = False
         self._order: tuple[Order, int, Path | None, Changes | None] = ("check", 0, None, None)
         self._forget()
 
@@ -116,6 +125,8 @@ class Supervisor:
         self._is_free = folder is not None and (
             not any(folder.iterdir()) if folder.is_dir() else not folder.exists()
         )
+        trial = self._trials[number]
+        self._say_unwatched(trial.file.limit)
         if _IN_PROCESS:
             return
         order = what, number, None if folder is None else str(folder), changes
@@ -126,7 +137,7 @@ class Supervisor:
             how = self._engine, self._page, hooks.observer, hooks.keep_going
             self._forked = Forked(partial(serve, self._trials, *how), *order)
         self._busy = True
-        self._forked.call_trace.limits = _limits(self._trials[number], self._hooks.hang_after)
+        self._forked.call_trace.limits = _limits(trial)
         self._forked.call_trace.devices = int(devices_allowed())
         if not begins:
             self._forked.link.send(*order)
@@ -199,6 +210,14 @@ class Supervisor:
                 raise SimulationError(f"{folder / MANIFEST} says {said!r} of a run that has ended")
         return result
 
+    def _say_unwatched(self, limits: LimitEntry) -> None:
+        """Warn once of limits that this system does not watch."""
+        is_watched = sys.platform == "linux" or (not _IN_PROCESS and limits.memory == NONE)
+        if limits.is_of_run and not is_watched and not self._is_warned:
+            self._is_warned = True
+            kinds = "limit: no process" if _IN_PROCESS else "limit.memory: no memory"
+            _LOGGER.warning("%s is watched on %s", kinds, sys.platform)
+
     def _forget(self) -> None:
         """Forget the run before."""
         self._loading, self._folder = "", Path()
@@ -228,7 +247,7 @@ class Supervisor:
 
     def _raise(self, kind: str, text: str) -> NoReturn:
         if kind == KeyboardInterrupt.__name__:
-            raise KeyboardInterrupt
+            raise InterruptedRun
         raise _ERRORS.get(kind, SimulationError)(text)
 
     def _shown(self, out: Path | None) -> Path:
@@ -254,9 +273,14 @@ class Supervisor:
         return Result(folder, status, error, [], [])
 
     def _dead_before_start(self) -> SimulationError:
+        assert self._forked is not None
+        trace = self._forked.call_trace
+        is_beyond = trace.end in (BEYOND_WALL, BEYOND_MEMORY) and trace.runs % 2
         status, error = self._how()
         if status == "stopped":
             return StoppedError(f"stopped before the run began; {error}")
+        if is_beyond:
+            return BeyondLimitError(error)
         return SimulationError(f"{error}; nothing was written")
 
     def _how(self) -> tuple[str, str]:
@@ -266,11 +290,15 @@ class Supervisor:
         how, trace = forked.how(), forked.call_trace
         forked.end()
         component, call = trace.entry(list(self._manifest.get("components", [])))
+        is_loading = self._loading and not self._manifest
         if trace.end:
-            error = _killed(trace, component, call)
+            loads = (
+                f"the loading of {self._loading}" if self._loading and not self._manifest else ""
+            )
+            error = _killed(trace, f"{component}: {call}" if component else loads)
         elif component:
             error = f"{component}: the process of the run {how} in {call}"
-        elif self._loading and not self._manifest:
+        elif is_loading:
             error = f"the process of the run {how} while it loaded {self._loading}"
         else:
             error = f"the process of the run {how} between two calls of components"
@@ -282,18 +310,25 @@ class Supervisor:
         self._forked.sent = []
 
 
-def _limits(trial: Trial, hang_after: float | None) -> Limits:
-    """Return how long a call at the start, in a step and at the end may take."""
-    if hang_after is not None:
-        return (hang_after or math.inf,) * 3
-    return IN_REAL_TIME if trial.file.real_time is not None else AT_ANY_PACE
+def _limits(trial: Trial) -> Limits:
+    """Return what a run of a trial may take."""
+    written = trial.file.limit
+    limits = IN_REAL_TIME if trial.file.real_time is not None else AT_ANY_PACE
+    if written.call_s is not None:
+        limits = Limits(*(written.call_s,) * 3)
+    return limits._replace(wall=written.wall_s, memory=written.memory_bytes)
 
 
-def _killed(trace: CallTrace, component: str, call: str) -> str:
-    """Return why the keeper has ended the process of a run."""
-    where = f"{component}: {call}" if component else "between two calls of components the run"
+def _killed(trace: CallTrace, where: str) -> str:
+    """Return why the keeper has ended the process of a run, which was ``where``."""
+    where = where or "between two calls of components the run"
     if trace.end == HUNG:
-        return f"{where} hung: no progress for {trace.limit(held=True):g} s (--hang-after)"
+        return f"{where} hung: no progress for {trace.limit(held=True):g} s (limit.call)"
+    if trace.end == BEYOND_WALL:
+        return f"{where}: beyond its limit of {trace.limits.wall:g} s of wall time (limit.wall)"
+    if trace.end == BEYOND_MEMORY:
+        most = trace.limits.memory / 1e6
+        return f"{where}: beyond its limit of {most:g} MB of memory (limit.memory)"
     return f"{where} did not end within {ASKED_S:g} s of the request to stop"
 
 

@@ -59,6 +59,17 @@ static void say(Rig *self, const char *format, ...) {
 #include "values.inc"
 #include "state.inc"
 
+fmi2Status rig_read(fmi2Component c, const fmi2ValueReference vr[], size_t count, double values[]) {
+    Rig *self = c;
+    fmi2Status status = refresh(self);
+    for (size_t i = 0; i < count && status <= fmi2Warning; i++) {
+        const Variable *variable = rig_variables + vr[i];
+        if (variable->kind == OUTPUT_VALUE) values[i] = self->state.signals[variable->place];
+        else status = get_one(self, vr[i], variable->type, values + i, NULL);
+    }
+    return status;
+}
+
 /* Let another value take the place of an output for all its readers, or end that; between steps. */
 void rig_override(fmi2Component c, fmi2ValueReference output, int begins, double value) {
     Rig *self = c;
