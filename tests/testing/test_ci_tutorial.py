@@ -80,7 +80,9 @@ def environment_in(folder: Path, *, downloads: bool) -> dict[str, str]:
     if not downloads:  # requirements are those of this environment
         (packages,) = folder.glob("lib/python*/site-packages")
         (packages / "requirements.pth").write_text(sysconfig.get_path("purelib") + "\n", "utf-8")
-    kept = {k: v for k, v in os.environ.items() if not k.startswith(("PYTEST_", "PYTHON"))}
+    kept = {
+        k: v for k, v in os.environ.items() if not k.startswith(("GITHUB_", "PYTEST_", "PYTHON"))
+    }
     return kept | {
         "PATH": f"{folder / 'bin'}{os.pathsep}{os.environ['PATH']}",
         "GITHUB_ACTION_PATH": str(ACTION),

@@ -1,4 +1,4 @@
-"""Summary of a job of sea trials: failed tests, campaigns, and what a pull request changes in them.
+"""Summary of a job of sea trials: failed tests, campaigns, and changes by a pull request.
 
 Markdown goes to the file GITHUB_STEP_SUMMARY, or to stdout where there is none; annotations of
 failed criteria go to stdout as workflow commands. CAMPAIGNS are files with wildcards; each is run
@@ -197,7 +197,7 @@ def escaped(text: str) -> str:
 
 
 def seatrial(*arguments: object, folder: Path | None = None) -> dict[str, Any]:
-    """Return what a command answers in JSON."""
+    """Return the answer of a command in JSON."""
     command = [sys.executable, "-m", "seatrial", *map(str, arguments), "--json"]
     done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
     try:

@@ -57,7 +57,7 @@ def search_front(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return points and values as `search` does, for the least of several values at once.
 
-    ``value`` has a column for each. It is Optuna's estimator of several objectives (Ozaki et al.,
+    ``value`` has a column for each. The search is Optuna's of several objectives (Ozaki et al.,
     Multiobjective tree-structured Parzen estimator, 2022), which knows the values at ``start``.
     """
     looked = _Looked(value, start)

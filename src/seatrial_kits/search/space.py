@@ -98,7 +98,7 @@ class Space:
 def space_of(campaign: Campaign, question: str, origin: str) -> Space:
     """Return the space of a question: of their own ``vary``, or that of the campaign's design.
 
-    Of ``tune`` it is what is tuned and then what varies, which may be nothing. Raises InputError
+    Of ``tune`` the tuned keys come first, and then the varied ones, if any. Raises InputError
     for another question if nothing varies.
     """
     ask, design = campaign.file.ask, campaign.file.design
@@ -110,7 +110,7 @@ def space_of(campaign: Campaign, question: str, origin: str) -> Space:
 
 
 def tuned_space(campaign: Campaign, origin: str) -> Space:
-    """Return the space of what is tuned. Raises InputError if nothing is, or if it varies too."""
+    """Return the space of the tuned keys. Raises InputError without one, or if one varies too."""
     ask, design = campaign.file.ask, campaign.file.design
     keys = ask.tune.keys if ask is not None and ask.tune is not None else {}
     if not keys:

@@ -1,4 +1,4 @@
-"""The question of tuning: the best values of gains, or of a design, over all that varies."""
+"""The question of tuning: the best values of gains, or of a design, over all varied keys."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ _FRESH = 1_000_003
 
 
 def tune_question(entry: TuneQuestion, asking: Asking) -> Callable[[], Finding]:
-    """Return what tunes, and writes the trial with the values that were found.
+    """Return the function that tunes and writes the trial with the tuned values.
 
     Raises InputError for a column that does not exist, and a trial that no trial file says.
     """
@@ -53,7 +53,7 @@ class _Tuning:
         self._cases = self._drawn(asking.seed)
 
     def finding(self) -> Finding:
-        """Search, check on fresh cases, write what was found, and say so."""
+        """Search, check on fresh cases, write the tuned trial, and return the answer."""
         asking, entry = self._asking, self._entry
         asking.expect((entry.candidates + 2 * self._varies) * self._count)
         present, notes = nominal_values(replace(asking, space=self._tuned), {})
@@ -78,7 +78,7 @@ class _Tuning:
     # ------------------------------------------------------------------ points and runs
 
     def _drawn(self, seed: int) -> np.ndarray:
-        """Return cases of what varies: a Latin hypercube through the distributions."""
+        """Return cases of the varied keys: a Latin hypercube through their distributions."""
         from scipy import special
         from scipy.stats import qmc
 

@@ -63,7 +63,7 @@ def table_columns(
 
 
 def settings_in(names: Sequence[str]) -> list[str]:
-    """Return the columns of a table that say what a case is: trial, settings, and seed once."""
+    """Return the columns of a case's own: trial, settings, and seed once."""
     found = list(names[names.index("trial") : names.index("status")])
     return found if found[-1] == "seed" else found[:-1]  # the run's own, where seeds are set
 

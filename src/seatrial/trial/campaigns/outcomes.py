@@ -28,7 +28,7 @@ Setting = tuple[float, str] | str
 
 @dataclass(frozen=True)
 class CaseOutcome:
-    """A case that has ended: what it set, and what it came to."""
+    """A case that has ended: its settings, verdicts and values."""
 
     number: int
     """From 1."""
@@ -52,7 +52,7 @@ class Outcomes:
     accepted: dict[str, str] = field(default_factory=dict)
     """Verdicts of the campaign's own criteria."""
     files: dict[str, str] = field(default_factory=dict)
-    """Content of what decides the cases: hashes and versions, by name."""
+    """Hashes of the files that decide the cases, and versions, by name."""
     links: dict[str, str] = field(default_factory=dict)
     """Addresses of the cases that have a folder, from the campaign's, by number."""
 

@@ -1,4 +1,4 @@
-"""Overview of a campaign's table: what was run, and what the criteria and figures came to."""
+"""Overview of a campaign's table: settings of the cases, values of criteria and figures."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ class Overview:
             self.first.append(row)
 
     def run(self) -> Shown:
-        """Return what was run: trials and settings, each with its values."""
+        """Return trials and settings, each with its values."""
         rows = []
         for key, counts in self._chosen.items():
             if counts:

@@ -69,7 +69,7 @@ class TuneQuestion(FileModel):
     candidates: int = Field(default=60, ge=10, le=10_000)
     """Sets of values that are tried."""
     cases: int = Field(default=10, ge=1, le=10_000)
-    """Runs of each candidate, the same for all: points of what varies."""
+    """Runs of each candidate, the same for all: points of the varied keys."""
 
 
 class WorstCaseQuestion(FileModel):

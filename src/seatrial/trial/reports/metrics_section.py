@@ -1,4 +1,4 @@
-"""Metrics of criteria in a report: each with its value and unit, and the course that it is of."""
+"""Metrics of criteria in a report: each with its value and unit, and its signal over time."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ class MetricShown:
     value: str
     """With its unit."""
     panel: Panel
-    """What it is of, within its window."""
+    """Its first argument over time, within its window."""
 
 
 def metrics_of(run: Run) -> list[MetricShown]:
@@ -107,7 +107,7 @@ def _shown(
 
 
 def _marks(metric: Metric, unit: str, values: Values, units: Units) -> Iterator[Mark]:
-    """Yield the level or target that a metric is about, and the band around it."""
+    """Yield the level or target of a metric, and the band around the target."""
     of = metric.arguments[0].exponents(units)
     levels = [a for a in metric.arguments[1:] if is_constant(a) and a.exponents(units) == of]
     numbers = [float(np.asarray(level.evaluate(values))) for level in levels]
