@@ -1,4 +1,4 @@
-"""What a caller sets of copies, as rows of values by reference."""
+"""Settings of copies as rows of values by reference."""
 
 from __future__ import annotations
 
