@@ -65,6 +65,7 @@ COMPONENT = [
 LONG = {
     KITS / "identify/identification.md",
     KITS / "identify/from-trials.md",
+    HOW_TO / "decide-with-campaigns.md",
     DOCS / "vehicles/guidance.md",
     DOCS / "vehicles/remus100.md",
     DOCS / "vehicles/supply-ship.md",
@@ -216,7 +217,9 @@ def run_commands(block: Block) -> None:
         )
         matches = doctest.OutputChecker().check_output(shown, got, doctest.ELLIPSIS)
         assert matches or not shown, f"{line}\n{got}"
-        shows_failure = re.search(r"FAIL|seatrial: |Error|of \d+ cases pass", shown)
+        shows_failure = re.search(
+            r"FAIL|seatrial: |Error|of \d+ cases pass|went from pass to fail", shown
+        )
         assert done.returncode == 0 or shows_failure, f"{line}: status {done.returncode}\n{got}"
 
 

@@ -346,3 +346,53 @@ def test_a_setting_gives_a_component_a_process_of_its_own(written: object, write
         Simulation(path, set={"b.isolated": "jailed"})
     with pytest.raises(InputError, match=r"set: bb\.isolated: unknown component 'bb'"):
         Simulation(path, set={"bb.isolated": True})
+
+
+@pytest.mark.parametrize("engine", ["direct", "fmu"])
+def test_a_reset_is_a_new_simulation(engine: str, rig: Rig) -> None:
+    given = {"source.level": 2.0, "lag.time_constant": "200 ms", "body.mass": 3.0}
+    with Simulation(rig(), engine=engine, seed=5, set=given) as new:
+        new.step(7)
+        wanted = [new.get(name) for name in new.signals]
+    with Simulation(rig(), engine=engine) as sim:
+        sim.step(3)
+        sim.set("types.place", [1.0, 2.0, 3.0])
+        sim.override("lag.y", 7.0)
+        sim.inject("fixed", "spring.force", value=1.0)
+        sim.reset(set=given, seed=5)
+        assert sim.time == 0.0
+        recording = sim.record("lag.y")
+        sim.step(7)
+        assert [sim.get(name) for name in sim.signals] == wanted
+        assert recording.signals["lag.y"][-1] == sim.get("lag.y")
+        sim.reset(set={"body.mass": 1.0})
+        sim.run(1)
+        assert sim.get("lag.y") == pytest.approx(2.0 * (1.0 - math.exp(-5.0)), rel=1e-12)
+
+
+def test_a_reset_that_does_not_fit_changes_nothing(rig: Rig) -> None:
+    with Simulation(rig(), set={"body.mass": 3.0}) as sim:
+        sim.step(3)
+        before = [sim.get(name) for name in sim.signals]
+        with pytest.raises(InputError, match=r"reset: lag.time_constant.*range"):
+            sim.reset(set={"body.mass": 1.0, "lag.time_constant": -1.0}, seed=9)
+        assert [sim.get(name) for name in sim.signals] == before
+        sim.step(3)
+        after = [sim.get(name) for name in sim.signals]
+        sim.reset()
+        sim.step(6)
+        assert [sim.get(name) for name in sim.signals] == after
+
+
+def test_a_state_from_before_a_reset_is_gone_back_to(rig: Rig) -> None:
+    with Simulation(rig()) as sim:
+        sim.step(5)
+        saved = sim.save()
+        sim.step(2)
+        wanted = [sim.get(name) for name in sim.signals]
+        sim.reset(set={"body.mass": 2.0})
+        sim.step(1)
+        sim.restore(saved)
+        assert sim.time == 0.5
+        sim.step(2)
+        assert [sim.get(name) for name in sim.signals] == wanted

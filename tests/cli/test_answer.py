@@ -95,7 +95,7 @@ def test_every_command_of_the_page_answers(folder: Path) -> None:
     calls = {
         "`list`": ("list",),
         "`describe`": ("describe", "rig.toml"),
-        "`compare`": ("compare", "a", "b"),
+        "`compare` of runs": ("compare", "a", "b"),
         "`doctor`": ("doctor",),
     }
     for name, arguments in calls.items():

@@ -49,7 +49,7 @@ def run_steps(folder: Path, given: dict[str, str], environment: dict[str, str]) 
         if "run" not in step:
             continue
         own = {
-            name: re.sub(r"\$\{\{ inputs\.([\w-]+) \}\}", lambda m: given[m[1]], text)
+            name: re.sub(r"\$\{\{ (?:inputs\.)?([\w.-]+) \}\}", lambda m: given.get(m[1], ""), text)
             for name, text in step["env"].items()
         }
         shell = ["bash", "--noprofile", "--norc", "-eo", "pipefail", "-c", step["run"]]
@@ -80,7 +80,9 @@ def environment_in(folder: Path, *, downloads: bool) -> dict[str, str]:
     if not downloads:  # requirements are those of this environment
         (packages,) = folder.glob("lib/python*/site-packages")
         (packages / "requirements.pth").write_text(sysconfig.get_path("purelib") + "\n", "utf-8")
-    kept = {k: v for k, v in os.environ.items() if not k.startswith(("PYTEST_", "PYTHON"))}
+    kept = {
+        k: v for k, v in os.environ.items() if not k.startswith(("GITHUB_", "PYTEST_", "PYTHON"))
+    }
     return kept | {
         "PATH": f"{folder / 'bin'}{os.pathsep}{os.environ['PATH']}",
         "GITHUB_ACTION_PATH": str(ACTION),
@@ -96,9 +98,11 @@ def test_the_repository_of_the_page_passes_and_fails_as_it_should(
     runner = environment_in(tmp_path / "environment", downloads=downloads)
     given = inputs(tmp_path / "helm") | {"package": str(wheel)}
 
-    installed, ran = run_steps(tmp_path / "helm", given, runner)
+    installed, ran, summary = run_steps(tmp_path / "helm", given, runner)
     assert installed.returncode == 0, installed.stderr
     assert ran.returncode == 0, ran.stdout
+    assert summary.returncode == 0, summary.stderr
+    assert "5 of 5 tests pass" in summary.stdout
     assert "5 passed" in ran.stdout
     found = cases(tmp_path / "helm/sea-trials/junit.xml")
     assert {"course", "current", "compass", "test_orders_are_answered"} <= set(found)
@@ -109,8 +113,11 @@ def test_the_repository_of_the_page_passes_and_fails_as_it_should(
     text = sketch.read_text("utf-8")
     turned = text.replace("ahead + turn", "ahead # turn").replace("ahead - turn", "ahead + turn")
     sketch.write_text(turned.replace("ahead # turn", "ahead - turn"), "utf-8")
-    _, ran = run_steps(tmp_path / "helm", given, runner)
+    _, ran, summary = run_steps(tmp_path / "helm", given, runner)
     assert ran.returncode == 1
+    assert "2 of 5 tests pass" in summary.stdout
+    place = "file=trials/course.toml,line=14,title=it turns east and stays there"
+    assert f"::error {place}::it turns east and stays there: " in summary.stdout
     found = cases(tmp_path / "helm/sea-trials/junit.xml")
     failed = {name for name, case in found.items() if case.find("failure") is not None}
     assert failed == {"course", "current", "test_an_order_turns_the_boat"}
@@ -129,5 +136,8 @@ def test_the_table_of_the_page_is_that_of_the_action() -> None:
     for name, shown in rows:
         default = STEPS["inputs"][name]["default"]
         assert shown.strip("`") == (
-            default or {"package": "the action's revision"}.get(name, "empty")
+            default
+            or {"package": "the action's revision", "base": "the pull request's base"}.get(
+                name, "empty"
+            )
         )

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from scipy import stats
 from scipy.stats import qmc
 
 from seatrial.errors import InputError
@@ -43,6 +44,12 @@ def test_one_point_lies_in_each_stratum(kind: str) -> None:
         ({"rayleigh": "2 m"}, 2.0, 2.0 * math.sqrt(4 / math.pi - 1)),
         ({"exponential": "30 s"}, 30.0, 30.0),
         ({"levels": [1.0, 2.0, 6.0], "weights": [1, 2, 1]}, 2.75, math.sqrt(3.6875)),
+        # a tenth in [0, 1], the rest in [2, 4]
+        (
+            {"bins": ["0 m", "1 m", "2 m", "4 m"], "weights": [1, 0, 9]},
+            2.75,
+            math.sqrt(0.1 / 3.0 + 0.9 * 28.0 / 3.0 - 2.75**2),
+        ),
         ({"spaced": ["-30 cm", "0.3 m", 7]}, 0.0, 10.0 * math.sqrt(48.0 / 12.0)),
     ],
 )
@@ -223,3 +230,73 @@ def test_a_mistake_in_a_fraction_is_named(changes: Any, message: str) -> None:
     vary = {key: {"levels": [0.0, 1.0]} for key in "abc"}
     with pytest.raises(InputError, match=message):
         rows(**{"vary": vary, "kind": "fractional-factorial", **changes})
+
+
+SCATTER: dict[str, Any] = {
+    "rows": {"key": "hs", "bins": ["0 m", "1 m", "3 m"]},
+    "columns": {"key": "tp", "bins": ["4 s", "6 s", "8 s", "12 s"]},
+    "occurrences": [[10, 30, 0], [0, 20, 40]],
+}
+
+
+@pytest.mark.parametrize("kind", ["monte-carlo", "latin-hypercube", "sobol"])
+def test_cells_of_a_scatter_diagram_are_drawn_by_their_occurrences(kind: str) -> None:
+    rows = drawn(Design.model_validate({"kind": kind, "count": 8192, "scatter": SCATTER}), "here")
+    hs = np.array([float(row["hs"].removesuffix(" m")) for row in rows])
+    tp = np.array([float(row["tp"].removesuffix(" s")) for row in rows])
+    found, *_ = np.histogram2d(hs, tp, bins=[[0, 1, 3], [4, 6, 8, 12]])
+    expected = np.array(SCATTER["occurrences"]) / 100.0
+    # Four standard errors of a share of 8192 independent draws.
+    assert found / 8192 == pytest.approx(expected, abs=4 * math.sqrt(0.25 / 8192))
+    assert (found[expected == 0] == 0).all()
+    inside = tp[(hs > 1) & (tp > 8)]
+    assert inside.mean() == pytest.approx(10.0, abs=4 * 4 / math.sqrt(12 * len(inside)))
+    assert stats.kstest(inside, stats.uniform(8, 4).cdf).pvalue > 1e-3
+
+
+def test_a_scatter_diagram_stands_beside_keys_that_correlate() -> None:
+    content: Any = {
+        "kind": "sobol", "count": 4096, "scatter": SCATTER,
+        "vary": {"a": {"normal": [0.0, 1.0]}, "b": {"normal": [0.0, 1.0]}},
+        "correlation": [{"between": ["a", "b"], "coefficient": 0.8}],
+    }  # fmt: skip
+    rows = drawn(Design.model_validate(content), "here")
+    table = np.array([[row["a"], row["b"], float(row["hs"].split()[0])] for row in rows])
+    correlation = np.corrcoef(table.T)
+    assert correlation[0, 1] == pytest.approx(0.8, abs=0.02)
+    assert correlation[0, 2] == pytest.approx(0.0, abs=0.02)
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        ({"occurrences": [[1, 2, 3]]}, "2 rows of 3 numbers are needed, one less than bins"),
+        ({"occurrences": [[1, 2], [3, 4]]}, "found 2 of 2"),
+        ({"occurrences": [[0, 0, 0], [0, 0, 0]]}, "all are 0"),
+        ({"occurrences": [[1, 2, -3], [0, 0, 0]]}, "numbers from 0 on are needed"),
+        ({"rows": {"key": "tp", "bins": ["0 m", "1 m", "3 m"]}}, "found tp twice"),
+        ({"rows": {"key": "hs", "bins": ["0 m", "3 m", "1 m"]}}, "rows: bins: limits in increasing"),
+    ],
+)  # fmt: skip
+def test_mistakes_in_a_scatter_diagram(change: Any, said: str) -> None:
+    content = {"kind": "monte-carlo", "count": 4, "scatter": {**SCATTER, **change}}
+    with pytest.raises(InputError, match=said):
+        drawn(Design.model_validate(content), "here")
+
+
+@pytest.mark.parametrize(
+    ("entry", "said"),
+    [
+        ({"bins": [0, 1, 2]}, r"weights = \[...\], 2 of them, is needed"),
+        ({"bins": [0, 1, 2], "weights": [1]}, "weights: 2 numbers from 0 on, not all 0, is needed"),
+        ({"bins": [0, 1, 2], "weights": [1, 1], "between": [0, 1]}, "between: it cuts other"),
+    ],
+)
+def test_mistakes_in_bins(entry: Any, said: str) -> None:
+    with pytest.raises(InputError, match=said):
+        drawn(Design.model_validate({"kind": "monte-carlo", "count": 4, "vary": {"a": entry}}), "x")
+
+
+def test_a_design_without_a_key_is_refused() -> None:
+    with pytest.raises(InputError, match="nothing varies"):
+        drawn(Design.model_validate({"kind": "monte-carlo", "count": 4}), "here")

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from ..sim.actions import ActionKind
     from ..sim.fault_schedule import Fault
     from ..sim.master import Master, Snapshot
+    from ..system.part import Part
     from ..system.rig import Rig
     from ..system.system import System
     from .recording import Recording
@@ -254,12 +255,41 @@ class Simulation:
         wanted = {name for pattern in patterns or ("*",) for name in self._matching(pattern)}
         described = [signal for name, signal in self.signals.items() if name in wanted]
         places = {".".join(name): place for place, name in enumerate(self._master.names)}
-        chosen, values = [places[signal.name] for signal in described], self._master.signals
-        recording = Recording(described, lambda: [values[place] for place in chosen])
+        chosen = [places[signal.name] for signal in described]
+        recording = Recording(described, lambda: [self._master.signals[place] for place in chosen])
         recording(self)
         return self.observe(recording)
 
     # ------------------------------------------------------------------ states
+
+    def reset(self, *, set: Mapping[str, Any] | None = None, seed: int | None = None) -> None:
+        """Start anew at time 0, as a new simulation with these settings and this seed would.
+
+        ``set`` changes parameters and start values from now on, fixed ones too, ``seed`` what all
+        noise derives from; what a program has set, overridden or injected since the start is
+        gone. Observers stay. Raises InputError for what does not fit, which changes nothing, for
+        text that is built into components in C, and if the rig cannot start with it.
+        """
+        from ..links.hardware import confined
+
+        self._refuse_closed()
+        system = self._master.system
+        if stuck := [name for name, part in system.parts.items() if not _starts_anew(part)]:
+            raise InputError(f"reset: {', '.join(stuck)} cannot start anew; make a new simulation")
+        before = system.seed, {part.name: dict(part.given) for part in system.parts.values()}
+        try:
+            with confined():
+                _give(system, as_settings(set), seed)
+                self._error = "it could not start anew"
+                for part in system.parts.values():
+                    part.instance.reset()
+                self._master = _begun(system)
+        except BaseException:
+            system.seed = before[0]
+            for part in system.parts.values():
+                part.given = before[1][part.name]
+            raise
+        self._error = ""
 
     def save(self) -> State:
         """Return the whole state: time, components with their noise, overrides.
@@ -447,12 +477,36 @@ def _loaded_rig(name: str, step: Any, choices: Mapping[str, str] | None) -> Rig:
     return rig if step is None else rig.changed({"step": step})
 
 
+def _give(system: System, settings: Mapping[str, Any], seed: int | None) -> None:
+    """Give a system further settings, and another seed. Raises InputError."""
+    from ..system.component_parameters import give_seed
+
+    if seed is not None:
+        system.seed = int(seed)
+        for part in system.parts.values():
+            give_seed(part, system.seed)
+    for key, written in settings.items():
+        system.set(key, written, "reset")
+
+
+def _starts_anew(part: Part) -> bool:
+    return part.is_sum or part.instance.restarts
+
+
 def _started(system: System) -> Master:
+    from ..plugins import service
+
+    if system.engine == "native":
+        service("native.carry")(system, weather=True)
+    return _begun(system)
+
+
+def _begun(system: System) -> Master:
     from ..plugins import service
     from ..sim.master import Master
 
     if system.engine == "native":
-        service("native.carry")(system)
+        service("native.meet_weather")(system)
     master = Master(system)
     try:
         master.initialise()

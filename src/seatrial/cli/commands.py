@@ -48,7 +48,7 @@ COMMANDS = {
     "report": Command("seatrial.cli.report:report", "Write the report of a run again."),
     "compare": Command(
         "seatrial.cli.compare:compare",
-        "Compare two runs signal by signal; status 1 if their signals differ.",
+        "Compare two runs or two campaigns; status 1 if signals differ, or a verdict goes to fail.",
     ),
     "log": Command(
         "seatrial.cli.log:log",

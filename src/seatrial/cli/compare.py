@@ -1,4 +1,4 @@
-"""``seatrial compare``: two runs, signal by signal."""
+"""``seatrial compare``: two runs signal by signal, or two campaigns case by case."""
 
 from __future__ import annotations
 
@@ -7,18 +7,41 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
+from rich.markup import escape
 
+from ..errors import InputError
 from ..trial.records.compare import compare as compare_runs
+from ..trial.reports.campaign_report import CAMPAIGN
 from .answer import answer
-from .show import console, print_table
+from .show import console, print_shown, print_table
 from .statuses import FAILED
 
 
 def compare(
-    run_a: Annotated[Path, typer.Argument(help="Folder of a run.")],
-    run_b: Annotated[Path, typer.Argument(help="Folder of another run.")],
+    run_a: Annotated[Path, typer.Argument(help="Folder of a run, or of a campaign.")],
+    run_b: Annotated[Path, typer.Argument(help="Folder of another one of the same kind.")],
+    page: Annotated[
+        Path | None,
+        typer.Option("--page", metavar="FILE", help="Of campaigns: write a page (HTML), too."),
+    ] = None,
 ) -> None:
-    """Compare two runs signal by signal; status 1 if their signals differ."""
+    """Compare two runs or two campaigns; status 1 if signals differ, or a verdict goes to fail.
+
+    Runs are compared signal by signal, campaigns case by case: cases with the same settings are
+    pairs. The campaigns' own criteria decide the status where both have some, and the cases'
+    verdicts otherwise.
+    """
+    campaigns = [(folder / CAMPAIGN).is_file() for folder in (run_a, run_b)]
+    if all(campaigns):
+        _compare_campaigns(run_a, run_b, page)
+        return
+    if any(campaigns):
+        one, other = (run_a, run_b) if campaigns[0] else (run_b, run_a)
+        raise InputError(
+            f"{one} is a campaign, and {other} has no {CAMPAIGN}: two of a kind are needed"
+        )
+    if page is not None:
+        raise InputError(f"--page: two campaigns are needed, and {run_a} has no {CAMPAIGN}")
     comparison = compare_runs(run_a, run_b)
     answer.result = {
         **asdict(comparison),
@@ -28,4 +51,22 @@ def compare(
     print_table(comparison.table())
     console.print(comparison.summary)
     if not comparison.identical:
+        raise typer.Exit(FAILED)
+
+
+def _compare_campaigns(folder_a: Path, folder_b: Path, page: Path | None) -> None:
+    from ..trial.campaigns.comparison import compare_campaigns
+
+    comparison = compare_campaigns(folder_a, folder_b)
+    answer.result = comparison.content()
+    for shown in comparison.tables():
+        print_shown(shown)
+    for line in comparison.lines:
+        console.print(escape(line), soft_wrap=True)
+    if page is not None:
+        from ..trial.campaigns.comparison_page import write_comparison_page
+
+        answer.result["page"] = str(write_comparison_page(comparison, page))
+        console.print(f"page: {page}", soft_wrap=True)
+    if comparison.is_worse:
         raise typer.Exit(FAILED)

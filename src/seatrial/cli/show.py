@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
+from rich.box import SIMPLE
 from rich.console import Console, ConsoleOptions, Group, RenderableType
 from rich.markup import escape
 from rich.segment import Segment
@@ -18,6 +19,7 @@ from .answer import answer
 
 if TYPE_CHECKING:
     from ..trial.campaigns.cases import Case
+    from ..trial.campaigns.finding import Shown
     from ..trial.criteria.verdict import Verdict
     from ..trial.running.run import Result
 
@@ -60,6 +62,21 @@ def print_table(table: Table | Group) -> None:
     else:
         width = console.measure(table, options=_UNBOUNDED).maximum
         SafeConsole(highlight=False, emoji=False, width=width).print(table)
+
+
+def print_shown(shown: Shown) -> None:
+    """Print a table of a campaign's answer, or of a comparison."""
+    table = Table(title=escape(shown.title), title_justify="left", box=SIMPLE, padding=(0, 1, 0, 0))
+    for place, column in enumerate(shown.columns):
+        is_number = all(isinstance(row[place], (int, float)) for row in shown.rows)
+        table.add_column(escape(column), justify="right" if is_number else "left")
+    for row in shown.rows:
+        table.add_row(*(escape(_written(each)) for each in row))
+    print_table(table)
+
+
+def _written(value: object) -> str:
+    return f"{value:.4g}" if isinstance(value, float) else str(value)
 
 
 def print_more(count: int) -> None:

@@ -33,7 +33,7 @@ def give_parameters(system: System, part: Part, profiles: Profiles) -> None:
     placed = system.rig.components[part.name]
     entry, where = placed.entry, placed.where
     part.home = _home(placed.scope, profiles)
-    _give_seed(part, system.seed)
+    give_seed(part, system.seed)
     _give_origin(part)
     if entry.parameters:
         values = _parameter_set(system, placed)
@@ -70,13 +70,29 @@ def vehicles_of(placed: Placed) -> list[Vehicle]:
     return [load_vehicle(name, folder) for name in names]
 
 
-def _give_seed(part: Part, seed: int) -> None:
-    """Give each instance noise of its own, yet the same in every tool and run."""
+_DERIVED = "derived from seed "
+
+
+def derived_seeds(part: Part) -> dict[str, str]:
+    """Return the component's seeds that follow from the system's: parameters, and whose each is."""
+    found = {}
     for name in part.instance.variables.of_role("seed"):
-        inside = name.rpartition(".")[0]  # of a rig as one FMU: the component's path there
-        owner = joined(part.name, inside) if inside else part.name
-        own = zlib.crc32(f"{seed}/{owner}".encode())
-        part.given[name] = Given(float(own), f"derived from seed {seed}")
+        given = part.given.get(name)
+        if given is None or given.origin.startswith(_DERIVED):
+            inside = name.rpartition(".")[0]  # of a rig as one FMU: the component's path there
+            found[name] = joined(part.name, inside) if inside else part.name
+    return found
+
+
+def seed_of(owner: str, seed: int) -> float:
+    """Return the seed of a component in a system with ``seed``."""
+    return float(zlib.crc32(f"{seed}/{owner}".encode()))
+
+
+def give_seed(part: Part, seed: int) -> None:
+    """Give each instance noise of its own, yet the same in every tool and run."""
+    for name, owner in derived_seeds(part).items():
+        part.given[name] = Given(seed_of(owner, seed), f"{_DERIVED}{seed}")
 
 
 def _give_origin(part: Part) -> None:

@@ -78,7 +78,8 @@ class SumInstance:
         """Advance: nothing to do, a sum has no state."""
 
     def reset(self) -> None:
-        """Never called: it does not restart."""
+        """Return to before `set_start`."""
+        self.inputs[:] = [0.0] * len(self.inputs)
 
     def goes_back(self, may: bool) -> None:
         """Say whether a state may be restored: nothing depends on it."""

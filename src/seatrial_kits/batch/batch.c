@@ -20,6 +20,8 @@
 #define EXPORTED __attribute__((visibility("default")))
 #endif
 
+#define MOST_THREADS 64
+
 typedef struct {
     fmi2Component rig;
     fmi2CallbackFunctions functions;
@@ -31,12 +33,14 @@ typedef struct {
 typedef struct {
     int64_t count;
     Copy *copies;
+    Work *works[MOST_THREADS]; /* of each thread: copies share it, their own operations would fill the caches */
 } Batch;
 
 typedef struct { /* what one thread does, for copies from `first`, before `last` */
     Batch *batch;
+    Work *work;
     int64_t first, last, steps;
-} Work;
+} Share;
 
 /* ------------------------------------------------------------------ copies */
 
@@ -60,6 +64,7 @@ static void check(Copy *copy, fmi2Status status) {
 EXPORTED void batch_free(Batch *batch) {
     if (!batch) return;
     for (int64_t i = 0; i < batch->count; i++) fmi2FreeInstance(batch->copies[i].rig);
+    for (int k = 0; k < MOST_THREADS; k++) free(batch->works[k]);
     free(batch->copies);
     free(batch);
 }
@@ -68,13 +73,15 @@ EXPORTED Batch *batch_new(int64_t count) {
     Batch *batch = calloc(1, sizeof *batch);
     if (!batch) return NULL;
     batch->copies = calloc((size_t)count, sizeof *batch->copies);
-    if (batch->copies)
+    batch->works[0] = rig_new_work();
+    if (batch->copies && batch->works[0])
         for (; batch->count < count; batch->count++) {
             Copy *copy = batch->copies + batch->count;
             const fmi2CallbackFunctions functions = {log_message, NULL, NULL, NULL, copy};
             memcpy(&copy->functions, &functions, sizeof functions); /* its fields are constant */
             copy->rig = fmi2Instantiate("", fmi2CoSimulation, RIG_GUID, "", &copy->functions, 0, 0);
             if (!copy->rig) break;
+            rig_lend(copy->rig, batch->works[0]);
         }
     if (batch->count == count) return batch;
     batch_free(batch);
@@ -93,22 +100,6 @@ static fmi2Status set_one(Copy *copy, uint32_t reference, double value) {
     default:
         return fmi2SetBoolean(copy->rig, &reference, 1, &whole);
     }
-}
-
-static fmi2Status get_one(Copy *copy, uint32_t reference, double *value) {
-    fmi2Integer whole = 0;
-    fmi2Status status = fmi2OK;
-    switch (rig_variables[reference].type) {
-    case REAL_TYPE:
-        return fmi2GetReal(copy->rig, &reference, 1, value);
-    case INTEGER_TYPE:
-        status = fmi2GetInteger(copy->rig, &reference, 1, &whole);
-        break;
-    default:
-        status = fmi2GetBoolean(copy->rig, &reference, 1, &whole);
-    }
-    *value = (double)whole;
-    return status;
 }
 
 static void set_row(Copy *copy, const uint32_t *references, int64_t count, const double *row) {
@@ -139,16 +130,9 @@ EXPORTED void batch_override(Batch *batch, const uint8_t *mask, const uint32_t *
 }
 
 EXPORTED void batch_get(Batch *batch, const uint32_t *references, int64_t count, double *values) {
-    int all_real = 1;
-    for (int64_t k = 0; k < count; k++) all_real &= rig_variables[references[k]].type == REAL_TYPE;
-    for (int64_t i = 0; i < batch->count; i++) {
+    for (int64_t i = 0; i < batch->count; i++) { /* of a copy that has failed: what it had */
         Copy *copy = batch->copies + i;
-        double *row = values + i * count;
-        if (all_real) { /* of a copy that has failed: what it had */
-            check(copy, fmi2GetReal(copy->rig, references, (size_t)count, row));
-            continue;
-        }
-        for (int64_t k = 0; k < count; k++) check(copy, get_one(copy, references[k], row + k));
+        check(copy, rig_read(copy->rig, references, (size_t)count, values + i * count));
     }
 }
 
@@ -171,37 +155,46 @@ EXPORTED void batch_start(Batch *batch, const uint8_t *mask, const uint32_t *ref
 }
 
 static void *worked(void *given) {
-    const Work *work = given;
-    const double h = (double)(work->steps * STEP_NS) / 1e9;
-    for (int64_t i = work->first; i < work->last; i++) {
-        Copy *copy = work->batch->copies + i;
+    const Share *share = given;
+    const double h = (double)(share->steps * STEP_NS) / 1e9;
+    for (int64_t i = share->first; i < share->last; i++) {
+        Copy *copy = share->batch->copies + i;
         if (copy->failed) continue;
+        rig_lend(copy->rig, share->work);
         check(copy, fmi2DoStep(copy->rig, (double)(copy->steps * STEP_NS) / 1e9, h, 1));
-        copy->steps += work->steps;
+        rig_lend(copy->rig, share->batch->works[0]);
+        copy->steps += share->steps;
     }
     return NULL;
 }
 
 EXPORTED void batch_step(Batch *batch, int64_t steps, int64_t threads) {
-    Work works[64];
+    Share shares[MOST_THREADS];
 #if defined(_WIN32)
     threads = 1;
 #else
-    pthread_t running[64];
-    int begun[64] = {0};
+    pthread_t running[MOST_THREADS];
+    int begun[MOST_THREADS] = {0};
 #endif
-    if (threads > 64) threads = 64;
-    for (int64_t k = 0; k < threads; k++)
-        works[k] = (Work){batch, batch->count * k / threads, batch->count * (k + 1) / threads, steps};
+    if (threads > MOST_THREADS) threads = MOST_THREADS;
+    for (int64_t k = 0; k < threads; k++) {
+        if (!batch->works[k] && !(batch->works[k] = rig_new_work())) threads = k;
+        shares[k].work = batch->works[k];
+    }
+    for (int64_t k = 0; k < threads; k++) {
+        shares[k].batch = batch, shares[k].steps = steps;
+        shares[k].first = batch->count * k / threads;
+        shares[k].last = batch->count * (k + 1) / threads;
+    }
 #if !defined(_WIN32)
     for (int64_t k = 1; k < threads; k++)
-        begun[k] = pthread_create(running + k, NULL, worked, works + k) == 0;
+        begun[k] = pthread_create(running + k, NULL, worked, shares + k) == 0;
 #endif
-    worked(works);
+    worked(shares);
 #if !defined(_WIN32)
     for (int64_t k = 1; k < threads; k++) {
         if (begun[k]) pthread_join(running[k], NULL);
-        else worked(works + k);
+        else worked(shares + k);
     }
 #endif
 }

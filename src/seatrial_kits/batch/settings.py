@@ -1,8 +1,7 @@
-"""What a caller sets of copies, as rows of values by reference."""
+"""Settings of copies as rows of values by reference."""
 
 from __future__ import annotations
 
-import zlib
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -14,15 +13,14 @@ from seatrial.api.written import as_written
 from seatrial.errors import InputError, unknown
 from seatrial.fmi.components.source import ComponentSource, find_source
 from seatrial.fmi.instance import Variable
+from seatrial.system.component_parameters import derived_seeds, seed_of
 from seatrial.system.part import Part
-from seatrial.system.paths import joined
 from seatrial.system.system import System
 from seatrial.system.values import check_limits, from_written, port_names, port_scalars
 from seatrial_kits.native.surroundings import Met, is_surrounded, surroundings_of
 from seatrial_kits.native.tables import is_built_in
 
 Floats = NDArray[np.float64]
-_SEED = "seed"
 
 
 class Settings:
@@ -199,13 +197,8 @@ class Settings:
         """Return the seeds of components, as `give_parameters` derives them from a system's."""
         found: dict[str, Floats] = {}
         for part in self._system.parts.values():
-            for name in part.instance.variables.of_role(_SEED):
-                given = part.given.get(name)
-                if given is not None and not given.origin.startswith("derived from seed"):
-                    continue  # somebody wrote it
-                inside = name.rpartition(".")[0]
-                owner = joined(part.name, inside) if inside else part.name
-                own = [float(zlib.crc32(f"{seed}/{owner}".encode())) for seed in seeds.tolist()]
+            for name, owner in derived_seeds(part).items():
+                own = [seed_of(owner, seed) for seed in seeds.tolist()]
                 found[f"{part.name}.{name}"] = np.array(own)
         return found
 

@@ -14,8 +14,8 @@
 #define FAULT_VALUES 16   /* of one setting, at most */
 #define ERROR_SIZE 1024
 
-typedef struct {
-    int first, count;
+typedef struct { /* in turn round the first `size` entries, a power of two: what is not needed stays cold */
+    int first, count, size;
 } Queue;
 
 typedef struct {

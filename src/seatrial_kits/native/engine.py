@@ -35,6 +35,22 @@ def carry_natively(
     return stay
 
 
+def meet_weather(system: System) -> None:
+    """Let plants in C, carried with ``weather``, meet that of their parameters at their next start.
+
+    Raises InputError for a sea, a current or a wind that cannot be.
+    """
+    from .surroundings import NOTHING, is_surrounded, surround, surroundings_of
+
+    for part in system.parts.values():
+        if part.is_sum or isinstance(part.instance, DirectInstance):
+            continue
+        source = find_source(part.fmu, system.rig.components[part.name].scope.folder)
+        if isinstance(source, ComponentSource) and is_surrounded(source):
+            values = {name: given.value for name, given in part.given.items()}
+            surround(part.instance, surroundings_of(source, values) or NOTHING)
+
+
 def in_python(system: System) -> dict[str, list[str]]:
     """Return the components in process that no C can carry, by reason; nothing is compiled.
 

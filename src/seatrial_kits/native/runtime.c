@@ -118,13 +118,16 @@ double interpolated(double x, int count, const double *xs, const double *ys) {
 
 /* ------------------------------------------------------------------ queues */
 
-int appended(Instance *self, Queue *queue, const char *where) {
+int appended(Instance *self, Queue *queue, void *entries, size_t bytes, const char *where) {
     if (queue->count == QUEUE_SIZE) {
         fail(self, "%s: more than %d entries wait for their time, at %s: shorten the delay, or "
                    "lengthen the period", self->name, QUEUE_SIZE, where);
         drop_first(*queue);
+    } else if (queue->count == queue->size) { /* those before the first go on behind the last */
+        memcpy((char *)entries + (size_t)queue->size * bytes, entries, (size_t)queue->first * bytes);
+        queue->size = queue->size ? 2 * queue->size : 4;
     }
-    return (queue->first + queue->count++) % QUEUE_SIZE;
+    return (queue->first + queue->count++) & (queue->size - 1);
 }
 
 /* ------------------------------------------------------------------ derivatives */

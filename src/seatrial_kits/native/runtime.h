@@ -145,16 +145,17 @@ double interpolated(double x, int count, const double *xs, const double *ys); /*
 
 /* ------------------------------------------------------------------ queues */
 
-int appended(Instance *self, Queue *queue, const char *where); /* the place of the new entry */
+/* The place of a new entry among `entries`, of so many bytes each. */
+int appended(Instance *self, Queue *queue, void *entries, size_t bytes, const char *where);
 
 static inline int entry_at(Instance *self, const Queue *queue, long long index) {
     const long long place = index < 0 ? index + queue->count : index;
-    if (0 <= place && place < queue->count) return (int)((queue->first + place) % QUEUE_SIZE);
+    if (0 <= place && place < queue->count) return (int)((queue->first + place) & (queue->size - 1));
     fail(self, "%s: there is no entry %lld of %d", self->name, index, queue->count);
     return 0;
 }
 
-#define drop_first(queue) ((queue).first = ((queue).first + 1) % QUEUE_SIZE, (queue).count--)
+#define drop_first(queue) ((queue).first = ((queue).first + 1) & ((queue).size - 1), (queue).count--)
 #define drop_last(queue) ((queue).count--)
 
 /* ------------------------------------------------------------------ random numbers */

@@ -1,1 +1,1 @@
-"""Questions to campaigns: worst cases, limits, rare events, sensitivity."""
+"""Questions to campaigns: worst cases, limits, rare events, sensitivity, tuning."""

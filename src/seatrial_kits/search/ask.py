@@ -25,6 +25,7 @@ from seatrial.trial.campaigns.questions import (
     Questions,
     RareQuestion,
     SensitivityQuestion,
+    TuneQuestion,
     WorstCaseQuestion,
 )
 from seatrial.trial.campaigns.sampled_checks import check
@@ -40,12 +41,14 @@ from .limits_answer import limits_question
 from .rare import rare_question
 from .sensitivity import sensitivity_question
 from .space import Space, space_of
+from .tune import tune_question
 from .worst_case import worst_case_question
 
 _ANSWERS: dict[str, tuple[type[FileModel], Callable[[Any, Asking], Callable[[], Finding]]]] = {
     "limits": (LimitsQuestion, limits_question),
     "rare": (RareQuestion, rare_question),
     "sensitivity": (SensitivityQuestion, sensitivity_question),
+    "tune": (TuneQuestion, tune_question),
     "worst-case": (WorstCaseQuestion, worst_case_question),
 }
 """Settings of each question, and what checks them and returns what answers it."""
@@ -77,7 +80,7 @@ def ask(
         raise InputError(f"--ask: {unknown('question', question, _ANSWERS)}")
     cases = asked_of(campaign, question)
     settings = campaign.file.ask or Questions()
-    space = space_of(campaign, f"{campaign.read_from.path}: ask")
+    space = space_of(campaign, question, f"{campaign.read_from.path}: ask")
     asking = Asking(campaign, cases, space, expect, how.engine, hooks, settings.seed)
     kind, prepared = _ANSWERS[question]
     entry = getattr(settings, question.replace("-", "_")) or kind()

@@ -36,7 +36,7 @@ def asked_run(campaign: Campaign, folder: Path, number: int) -> Case:
     refuse_other(index, index_of(campaign, identity, engine, 0, [question, settings]))
     refuse_changed(index, identity)
     cases = asked_of(campaign, question)
-    space = space_of(campaign, f"{campaign.read_from.path}: ask")
+    space = space_of(campaign, question, f"{campaign.read_from.path}: ask")
     rows = read_rows(folder / RESULTS)
     count = 0
     for count, row in enumerate(rows, 1):

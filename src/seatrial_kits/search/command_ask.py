@@ -6,14 +6,12 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
-from rich.box import SIMPLE
 from rich.markup import escape
-from rich.table import Table
 
 from seatrial.cli.answer import answer
 from seatrial.cli.options import EngineName, Network, Out, engine_named
 from seatrial.cli.run_options import Cluster, Jobs, KeepName, NoReport, RerunChanged, Resume
-from seatrial.cli.show import console, print_notes, print_table
+from seatrial.cli.show import console, print_notes, print_shown
 from seatrial.cli.stopping import stoppable
 from seatrial.cli.watch import Watch
 from seatrial.errors import InputError
@@ -21,7 +19,7 @@ from seatrial.links.hardware import allow_network
 from seatrial.trial.campaigns.campaign import load_campaign
 from seatrial.trial.campaigns.cases import Case
 from seatrial.trial.campaigns.ended import Ended
-from seatrial.trial.campaigns.finding import Finding, Shown
+from seatrial.trial.campaigns.finding import Finding
 from seatrial.trial.campaigns.page import write_table_page
 from seatrial.trial.campaigns.sweep import How, keep_named
 from seatrial.trial.running.hooks import Hooks
@@ -38,7 +36,7 @@ def ask(
             metavar="QUESTION",
             help="'limits': the boundary of what passes; 'worst-case': the least robustness, and "
             "the smallest change that fails; 'sensitivity': how much each key matters; 'rare': how "
-            "likely a failure is.",
+            "likely a failure is; 'tune': the best values of gains over all that varies.",
         ),
     ],
     engine: EngineName = "fmu",
@@ -89,22 +87,8 @@ def _say(finding: Finding, folder: Path, page: Path | None) -> None:
     for line in finding.lines:
         console.print(f"  {escape(line)}", soft_wrap=True)
     for shown in finding.tables:
-        print_table(_table(shown))
+        print_shown(shown)
     answer.result = {**finding.content(), "folder": str(folder)}
     console.print(f"answer: {folder}", soft_wrap=True)
     if page is not None:
         console.print(f"report: {page}", soft_wrap=True)
-
-
-def _table(shown: Shown) -> Table:
-    table = Table(title=escape(shown.title), title_justify="left", box=SIMPLE, padding=(0, 1, 0, 0))
-    for place, column in enumerate(shown.columns):
-        is_number = all(isinstance(row[place], (int, float)) for row in shown.rows)
-        table.add_column(escape(column), justify="right" if is_number else "left")
-    for row in shown.rows:
-        table.add_row(*(escape(_written(each)) for each in row))
-    return table
-
-
-def _written(value: object) -> str:
-    return f"{value:.4g}" if isinstance(value, float) else str(value)

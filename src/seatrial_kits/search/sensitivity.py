@@ -11,17 +11,15 @@ import numpy as np
 from seatrial.errors import InputError, SimulationError, unknown
 from seatrial.trial.campaigns.finding import Finding, Shown
 from seatrial.trial.campaigns.questions import SensitivityQuestion
-from seatrial.trial.running.measuring import Measured
 
 from .asking import Asking, robustness_of
 from .drawing import Axes, drawn
 from .indices import Morris, Sobol, morris, sobol
+from .outputs import Output, figures_of
 from .parquet import write_columns
 from .searching import needed
 
 INDICES = "indices.parquet"
-_PLACES = ("least", "greatest", "last")
-Output = Callable[[Measured], float]
 
 
 def sensitivity_question(entry: SensitivityQuestion, asking: Asking) -> Callable[[], Finding]:
@@ -33,7 +31,7 @@ def sensitivity_question(entry: SensitivityQuestion, asking: Asking) -> Callable
     for library in ("SALib", "matplotlib"):
         needed(library)
     space, origin = asking.space, asking.origin
-    if (space.lower != np.eye(len(space.keys))).any():
+    if space.scatter is not None or (space.lower != np.eye(len(space.keys))).any():
         raise InputError(
             f"{origin}: the design's keys are correlated, and Sobol's indices are of keys that "
             "are not: say what varies in [ask.vary]"
@@ -72,11 +70,7 @@ def _answer(entry: SensitivityQuestion, asking: Asking, outputs: dict[str, Outpu
 def _outputs(entry: SensitivityQuestion, asking: Asking) -> dict[str, Output]:
     """Return what is asked about, by name, as functions of what a run came to."""
     criteria = [name for name, _ in asking.asked.base.criteria]
-    known: dict[str, Output] = {
-        f"{which} {signal}": partial(_figure, i, j)
-        for i, signal in enumerate(asking.asked.base.figures)
-        for j, which in enumerate(_PLACES)
-    }
+    known = figures_of(asking.asked.base)
     known |= {name: partial(robustness_of, names=[name]) for name in criteria}
     chosen = entry.of or [*criteria, *(name for name in known if name not in criteria)]
     for name in chosen:
@@ -89,10 +83,6 @@ def _outputs(entry: SensitivityQuestion, asking: Asking) -> dict[str, Output]:
             "figures, to ask about"
         )
     return {name: known[name] for name in chosen}
-
-
-def _figure(place: int, which: int, measured: Measured) -> float:
-    return float(measured.figures[place][which])
 
 
 def _finding(

@@ -10,8 +10,9 @@ import numpy as np
 
 from seatrial.errors import InputError, unknown
 from seatrial.trial.campaigns.campaign import Campaign
-from seatrial.trial.campaigns.designs import lower_factor
-from seatrial.trial.campaigns.distributions import Law, read_distribution
+from seatrial.trial.campaigns.designs import joint_quantiles, laws_of, lower_factor
+from seatrial.trial.campaigns.distributions import Distribution, Law, read_distribution
+from seatrial.trial.campaigns.scatter import Scatter
 
 _TAILS = np.array([0.00135, 0.99865])
 """Probabilities at which a distribution without an end is cut: three standard deviations."""
@@ -30,6 +31,8 @@ class Space:
     laws: tuple[Law, ...]
     lower: np.ndarray
     """Cholesky's factor of the correlation of the normal scores."""
+    scatter: Scatter | None = None
+    """Diagram of the last two keys together."""
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "ends", np.array([_ends(law) for law in self.laws]))
@@ -65,7 +68,15 @@ class Space:
     def quantiles(self, probabilities: np.ndarray) -> np.ndarray:
         """Return the values of the keys at independent probabilities."""
         inside = np.clip(probabilities, _TINY, 1.0 - _TINY)
-        return np.stack([law.quantiles(inside[:, i]) for i, law in enumerate(self.laws)], axis=1)
+        return np.stack(joint_quantiles(self.laws, self.scatter, inside), axis=1)
+
+    def with_(self, other: Space) -> Space:
+        """Return the space of these keys and then those of another, which are independent."""
+        size, more = len(self.keys), len(other.keys)
+        lower = np.block(
+            [[self.lower, np.zeros((size, more))], [np.zeros((more, size)), other.lower]]
+        )
+        return Space(self.keys + other.keys, self.laws + other.laws, lower, other.scatter)
 
     def only(self, keys: Sequence[str], origin: str) -> Space:
         """Return the space of some keys; of all, if there are none. Raises InputError."""
@@ -84,11 +95,41 @@ class Space:
         return [f"{key}, {unit}" if unit else key for key, unit in pairs]
 
 
-def space_of(campaign: Campaign, origin: str) -> Space:
-    """Return the space of questions: of their own ``vary``, or that of the campaign's design.
+def space_of(campaign: Campaign, question: str, origin: str) -> Space:
+    """Return the space of a question: of their own ``vary``, or that of the campaign's design.
 
-    Raises InputError if neither has a key.
+    Of ``tune`` the tuned keys come first, and then the varied ones, if any. Raises InputError
+    for another question if nothing varies.
     """
+    ask, design = campaign.file.ask, campaign.file.design
+    if question == "tune":
+        tuned = tuned_space(campaign, f"{origin}.tune")
+        varies = bool(ask and ask.vary) or design is not None
+        return tuned.with_(_varied(campaign, origin)) if varies else tuned
+    return _varied(campaign, origin)
+
+
+def tuned_space(campaign: Campaign, origin: str) -> Space:
+    """Return the space of the tuned keys. Raises InputError without one, or if one varies too."""
+    ask, design = campaign.file.ask, campaign.file.design
+    keys = ask.tune.keys if ask is not None and ask.tune is not None else {}
+    if not keys:
+        raise InputError(
+            f'{origin}: keys: at least one with its ends is needed, such as "pilot.kp" = [0.1, 10]'
+        )
+    varied = (ask.vary if ask else None) or (design.keys if design else ())
+    if both := [key for key in keys if key in varied]:
+        raise InputError(f"{origin}: keys: {both[0]} varies too: it can be tuned or drawn")
+    laws = {}
+    for key, ends in keys.items():
+        here = f"{origin}: keys: {key}"
+        if len(ends) != 2:
+            raise InputError(f"{here}: low and high are needed, found {ends}")
+        laws[key] = read_distribution(Distribution(uniform=ends), here)
+    return Space(tuple(laws), tuple(laws.values()), np.eye(len(laws)))
+
+
+def _varied(campaign: Campaign, origin: str) -> Space:
     ask, design = campaign.file.ask, campaign.file.design
     if ask is not None and ask.vary:
         laws = {k: read_distribution(e, f"{origin}: vary: {k}") for k, e in ask.vary.items()}
@@ -99,8 +140,8 @@ def space_of(campaign: Campaign, origin: str) -> Space:
             'such as "hull.mass" = { uniform = ["20 kg", "24 kg"] }'
         )
     here = f"{campaign.read_from.path}: design"
-    laws = {k: read_distribution(e, f"{here}: vary: {k}") for k, e in design.vary.items()}
-    return Space(tuple(laws), tuple(laws.values()), lower_factor(design, here))
+    laws, scatter = laws_of(design, here)
+    return Space(tuple(laws), tuple(laws.values()), lower_factor(design, here), scatter)
 
 
 def refuse_whole(space: Space, origin: str, why: str) -> None:

@@ -90,6 +90,21 @@ def test_a_copy_has_the_bytes_of_a_single_run(
         assert [v.hex() for v in found[i].tolist()] == [v.hex() for v in expected]
 
 
+def test_a_single_simulation_starts_anew_in_other_water(rig: Path) -> None:
+    given = {"cork.current_speed": 0.4, "cork.mass": 3.0}
+    expected = single(rig, 8, given, lambda one: one.step(25))
+    with Simulation(rig, engine="native") as one:
+        one.step(5)
+        one.reset(set=given, seed=8)
+        one.step(25)
+        assert everything(one) == expected
+        with pytest.raises(InputError, match="'linear', built into this FMU"):
+            one.reset(set={"cork.form": "square"})
+        one.reset()
+        one.step(25)
+        assert everything(one) == expected
+
+
 def test_each_copy_follows_its_closed_form(rig: Path) -> None:
     """Without a pilot, v = stream (1 - exp(-drag t / mass))."""
     streams, masses = np.array([0.0, 0.3, 1.0]), np.array([1.0, 2.0, 4.0])

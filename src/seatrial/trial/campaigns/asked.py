@@ -50,10 +50,11 @@ def asked_of(campaign: Campaign, question: str) -> Asked:
     file, origin = campaign.file, f"{campaign.read_from.path}: ask"
     ask = file.ask or Questions()
     trial, own = _trial(campaign, ask.trial, origin)
-    varied = ask.vary or (file.design.vary if file.design else {})
+    varied = {*(ask.vary or (file.design.keys if file.design else ()))}
+    tuned = {*(ask.tune.keys if question == "tune" and ask.tune is not None else ())}
     common: dict[str, Any] = {**file.set, **own.set}
     for key, values in {**file.grid, **own.grid}.items():
-        if key in ask.set or key in varied:
+        if key in ask.set or key in varied or (key in tuned and len(values) > 1):
             continue
         if len(values) > 1:
             raise InputError(
@@ -64,6 +65,7 @@ def asked_of(campaign: Campaign, question: str) -> Asked:
     common = {key: v for key, v in {**common, **ask.set}.items() if key not in varied}
     base = campaign.limited(trial.changed(common, f"{origin}: set"))
     base = replace(base, figures=tuple(file.figures))
+    common = {key: v for key, v in common.items() if key not in tuned}  # the base's is the present
     return Asked(question, base, common, f"{origin}: vary")
 
 

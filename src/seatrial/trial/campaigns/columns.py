@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
 
@@ -60,6 +60,12 @@ def table_columns(
         for index, which in enumerate(("least", "greatest", "last"))
     ]
     return _unlike(columns)
+
+
+def settings_in(names: Sequence[str]) -> list[str]:
+    """Return the columns of a case's own: trial, settings, and seed once."""
+    found = list(names[names.index("trial") : names.index("status")])
+    return found if found[-1] == "seed" else found[:-1]  # the run's own, where seeds are set
 
 
 def _check_map(campaign: Campaign, settings: Mapping[str, list[Any]]) -> None:

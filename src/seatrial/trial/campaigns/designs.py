@@ -10,8 +10,9 @@ from pydantic import Field
 
 from ...errors import InputError
 from ...system.files import FileModel
-from .distributions import Distribution, read_distribution
+from .distributions import Distribution, Law, read_distribution
 from .factorial import factorial_rows
+from .scatter import Scatter, ScatterEntry, read_scatter
 
 MOST_CASES = 1_000_000
 _TINY = 2.0**-40
@@ -33,10 +34,18 @@ class Design(FileModel):
     ]
     count: int | None = Field(default=None, gt=0, le=MOST_CASES)
     seed: int = Field(default=0, ge=0)
-    vary: dict[str, Distribution] = Field(min_length=1)
+    vary: dict[str, Distribution] = Field(default_factory=dict)
     correlation: list[Correlation] = Field(default_factory=list)
+    scatter: ScatterEntry | None = None
+    """Two more keys, drawn together."""
     resolution: int | None = Field(default=None, ge=3)
     generators: str | None = None
+
+    @property
+    def keys(self) -> list[str]:
+        """All keys that it draws: of ``vary``, then rows and columns of ``scatter``."""
+        scatter = self.scatter
+        return [*self.vary, *([scatter.rows.key, scatter.columns.key] if scatter else [])]
 
 
 def drawn(design: Design, origin: str) -> list[dict[str, Any]]:
@@ -45,11 +54,14 @@ def drawn(design: Design, origin: str) -> list[dict[str, Any]]:
     Points are of the unit cube (independent; a Latin hypercube with one point in each of ``count``
     strata of every key; Sobol's sequence, scrambled after Owen), and go through the inverse of each
     distribution's cumulative one. Correlation is that of the normal scores (a Gaussian copula):
-    between normal keys it is Pearson's. Factorial designs have every combination of the levels, or
-    a fraction of them (`factorial_rows`). Raises InputError.
+    between normal keys it is Pearson's. The keys of a scatter diagram are independent of others.
+    Factorial designs have every combination of the levels, or a fraction of them
+    (`factorial_rows`). Raises InputError.
     """
+    if not design.keys:
+        raise InputError(f"{origin}: nothing varies: vary needs a key, or scatter two")
     if design.kind.endswith("-factorial"):
-        _refuse(design, ("count", "seed", "correlation"), origin)
+        _refuse(design, ("count", "seed", "correlation", "scatter"), origin)
         fraction = design.resolution, design.generators
         if design.kind == "full-factorial":
             _refuse(design, ("resolution", "generators"), origin)
@@ -58,18 +70,39 @@ def drawn(design: Design, origin: str) -> list[dict[str, Any]]:
     _refuse(design, ("resolution", "generators"), origin)
     if design.count is None:
         raise InputError(f"{origin}: count: {design.kind} needs it")
-    laws = {
-        key: read_distribution(entry, f"{origin}: vary: {key}")
-        for key, entry in design.vary.items()
-    }
+    laws, scatter = laws_of(design, origin)
     lower = lower_factor(design, origin)
     points = np.clip(_points(design, design.count, origin), _TINY, 1.0 - _TINY)
     if design.correlation:
         from scipy import special  # dear to import, and no other command needs it
 
         points = special.ndtr(special.ndtri(points) @ lower.T)
-    columns = [law.drawn(points[:, i]) for i, law in enumerate(laws.values())]
+    numbers = joint_quantiles(list(laws.values()), scatter, points)
+    columns = [law.settings(column) for law, column in zip(laws.values(), numbers, strict=True)]
     return [dict(zip(laws, row, strict=True)) for row in zip(*columns, strict=True)]
+
+
+def laws_of(design: Design, origin: str) -> tuple[dict[str, Law], Scatter | None]:
+    """Return the distribution of each key by itself, and the scatter diagram. Raises InputError."""
+    laws = {
+        key: read_distribution(entry, f"{origin}: vary: {key}")
+        for key, entry in design.vary.items()
+    }
+    if design.scatter is None:
+        return laws, None
+    scatter = read_scatter(design.scatter, f"{origin}: scatter")
+    if twice := laws.keys() & scatter.laws.keys():
+        raise InputError(f"{origin}: scatter: {min(twice)} is a key of vary too")
+    return laws | scatter.laws, scatter
+
+
+def joint_quantiles(
+    laws: Sequence[Law], scatter: Scatter | None, probabilities: np.ndarray
+) -> list[np.ndarray]:
+    """Return each key's numbers at probabilities, a column each; those of a diagram are last."""
+    alone = laws if scatter is None else laws[:-2]
+    numbers = [law.quantiles(probabilities[:, i]) for i, law in enumerate(alone)]
+    return numbers if scatter is None else [*numbers, *scatter.numbers(probabilities[:, -2:]).T]
 
 
 def _refuse(design: Design, keys: Sequence[str], origin: str) -> None:
@@ -81,7 +114,7 @@ def _refuse(design: Design, keys: Sequence[str], origin: str) -> None:
 
 def _points(design: Design, count: int, origin: str) -> np.ndarray:
     """Return points of the unit cube, a row for each case."""
-    dimensions, random = len(design.vary), np.random.default_rng(design.seed)
+    dimensions, random = len(design.keys), np.random.default_rng(design.seed)
     if design.kind == "monte-carlo":
         return random.random((count, dimensions))
     from scipy.stats import qmc  # half a second, of every command if it stood above
@@ -99,7 +132,7 @@ def _points(design: Design, count: int, origin: str) -> np.ndarray:
 
 def lower_factor(design: Design, origin: str) -> np.ndarray:
     """Return Cholesky's factor of the correlation matrix."""
-    keys, matrix = list(design.vary), np.eye(len(design.vary))
+    keys, matrix = list(design.vary), np.eye(len(design.keys))
     if design.correlation and design.kind == "latin-hypercube":
         raise InputError(
             f"{origin}: correlation: it would break the strata of a latin-hypercube; "

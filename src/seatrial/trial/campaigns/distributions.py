@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -19,7 +19,7 @@ Written = str | float | int
 _CONTINUOUS = (
     "normal", "uniform", "lognormal", "triangular", "weibull", "rayleigh", "exponential"
 )  # fmt: skip
-_FORMS = (*_CONTINUOUS, "integers", "levels", "spaced")
+_FORMS = (*_CONTINUOUS, "bins", "integers", "levels", "spaced")
 _DIGITS = 12
 """Of a level between two others: 0.3, not 0.30000000000000004."""
 _PARTS = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(\S.*?)?\s*$")
@@ -35,10 +35,12 @@ class Distribution(FileModel):
     weibull: list[Written] | None = Field(default=None, min_length=2, max_length=2)
     rayleigh: Written | None = None
     exponential: Written | None = None
+    bins: list[Written] | None = Field(default=None, min_length=2)
+    """Limits of bins, of which ``weights`` says how often each is drawn: a histogram."""
     integers: list[int] | None = Field(default=None, min_length=2, max_length=2)
     levels: list[Any] | None = Field(default=None, min_length=1)
     weights: list[float] | None = None
-    """How often each of ``levels`` is drawn, in proportion; all alike without."""
+    """How often each of ``levels`` or ``bins`` is drawn, in proportion; levels alike without."""
     spaced: list[Written] | None = Field(default=None, min_length=3, max_length=3)
     between: list[Written] | None = Field(default=None, min_length=2, max_length=2)
 
@@ -55,6 +57,8 @@ class Law:
     """Numbers are whole: seeds, places among ``levels``."""
     levels: Sequence[Any] = ()
     """All values there are, if numbers are places among them."""
+    edges: np.ndarray = field(default_factory=lambda: np.empty(0))
+    """Limits of the bins of a histogram."""
 
     def settings(self, numbers: np.ndarray) -> list[Any]:
         """Return numbers as a campaign sets them: text with the unit, if there is one."""
@@ -73,16 +77,19 @@ def read_distribution(entry: Distribution, origin: str) -> Law:
 
     normal: mean, standard deviation; lognormal: those of the quantity itself, not of its logarithm;
     uniform: low, high; triangular: low, mode, high; weibull: scale, shape; rayleigh and
-    exponential: mean; integers: first, last, all alike; levels and spaced: as `levels_of` returns
-    them, all alike or by ``weights``. ``between`` cuts off what is outside of a
+    exponential: mean; bins: limits of bins, one is drawn by ``weights``, uniform inside it;
+    integers: first, last, all alike; levels and spaced: as `levels_of` returns them, all alike or
+    by ``weights``. ``between`` cuts off what is outside of a
     continuous one. Settings are text in the unit that the first number has, or numbers if none has
     a unit. Raises InputError.
     """
     form = _form(entry, origin)
     here = f"{origin}: {form}"
     written = getattr(entry, form)
-    if entry.weights is not None and form != "levels":
-        raise InputError(f"{origin}: weights: they go with levels, not with {form}")
+    if entry.weights is not None and form not in ("levels", "bins"):
+        raise InputError(f"{origin}: weights: they go with levels or bins, not with {form}")
+    if form == "bins":
+        return _histogram(entry, origin)
     if form not in _CONTINUOUS:
         return _one_of(levels_of(entry, origin), entry.weights, f"{origin}: weights")
     written = written if isinstance(written, list) else [written]
@@ -130,19 +137,52 @@ def levels_of(entry: Distribution, origin: str) -> Sequence[Any]:
     return [f"{value!r} {unit}" if unit else value for value in values]
 
 
+def drawn_cells(weights: np.ndarray, probabilities: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return the cells at probabilities, drawn by weight, and the share of the way through each."""
+    last = int(np.flatnonzero(weights)[-1])
+    ends = np.cumsum(weights) / np.sum(weights)
+    cells = np.minimum(np.searchsorted(ends[:-1], probabilities, side="right"), last)
+    begins, sizes = np.append(0.0, ends)[cells], np.asarray(weights)[cells] / np.sum(weights)
+    return cells, np.clip((probabilities - begins) / sizes, 0.0, 1.0)
+
+
 def number_and_unit(text: str) -> tuple[float, str | None]:
     """Return number and unit, perhaps empty, of a quantity; the unit None for other text."""
     part = _PARTS.match(text)
     return (math.nan, None) if part is None else (float(part[1]), part[2] or "")
 
 
+def _histogram(entry: Distribution, origin: str) -> Law:
+    """Return the distribution of bins with weights: piecewise uniform."""
+    here, written, weights = f"{origin}: bins", entry.bins or [], entry.weights
+    if entry.between:
+        raise InputError(f"{origin}: between: it cuts other distributions, not bins")
+    numbers, unit = _numbers(written, False, here)
+    edges = np.array(numbers)
+    _needed(bool((np.diff(edges) > 0.0).all()), "limits in increasing order", here, written)
+    _needed(weights is not None, f"weights = [...], {len(edges) - 1} of them,", here, written)
+    _check_weights(weights or [], len(edges) - 1, f"{origin}: weights")
+    shares = np.array(weights)
+
+    def quantiles(probability: np.ndarray) -> np.ndarray:
+        cells, within = drawn_cells(shares, probability)
+        result: np.ndarray = edges[cells] + np.diff(edges)[cells] * within
+        return result
+
+    return Law(quantiles, unit, edges=edges)
+
+
+def _check_weights(weights: list[float], count: int, where: str) -> None:
+    is_right = len(weights) == count and sum(weights) > 0.0
+    is_right &= all(weight >= 0.0 and math.isfinite(weight) for weight in weights)
+    _needed(is_right, f"{count} numbers from 0 on, not all 0,", where, weights)
+
+
 def _one_of(levels: Sequence[Any], weights: list[float] | None, where: str) -> Law:
     first, last = (levels[0], levels[-1]) if isinstance(levels, range) else (0, len(levels) - 1)
     named = () if isinstance(levels, range) else levels
     if weights is not None:
-        is_right = len(weights) == len(levels) and sum(weights) > 0.0
-        is_right &= all(weight >= 0.0 and math.isfinite(weight) for weight in weights)
-        _needed(is_right, f"{len(levels)} numbers from 0 on, not all 0,", where, weights)
+        _check_weights(weights, len(levels), where)
         ends = np.cumsum(weights) / sum(weights)
         return Law(lambda p: np.searchsorted(ends[:-1], p, side="right"), "", True, named)
     return Law(lambda p: first + np.floor(p * (last - first + 1)), "", True, named)

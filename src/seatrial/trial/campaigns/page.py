@@ -7,7 +7,6 @@ from dataclasses import dataclass, field
 from html import escape
 from pathlib import Path
 from typing import Any
-from urllib.parse import quote
 
 import numpy as np
 from markupsafe import Markup
@@ -23,6 +22,8 @@ from ..reports.report import REPORT, render
 from .campaign import INDEX
 from .finding import ANSWER, Finding, read_answer
 from .maps import campaign_map, map_figure, said_of
+from .outcomes import links_of
+from .overview import Overview
 from .stopping_rule import failure_interval
 from .table import RESULTS, read_rows, units_of
 
@@ -76,12 +77,14 @@ def write_table_page(folder: Path) -> Path:
     index = checked_json(folder / INDEX, run_schema.CAMPAIGN)
     units = units_of(path)
     names = list(units)
-    settings = names[2 : names.index("seed")]
+    settings = names[2 : names.index("status") - 1]  # the run's own seed is the last
     prefix = "robustness of "
     criteria = [_Criterion(n.removeprefix(prefix)) for n in names if n.startswith(prefix)]
     found = _Found(values={key: [] for key in settings})
+    overview = Overview(names, units)
     for row in read_rows(path):
         found.count += 1
+        overview.add(row)
         found.cases.append(row["case"])
         found.failed.append(not row["passed"])
         for criterion in criteria:
@@ -108,11 +111,14 @@ def write_table_page(folder: Path) -> Path:
         settings=settings,
         units=units,
         shown=found.shown,
-        links=_links(folder, index),
+        links=links_of(folder, index["cases"]),
         rerun=_rerun(folder, index, is_answer=answer is not None),
         map=None if shown_map is None else map_figure(shown_map).json(),
         said_of_map=None if shown_map is None else said_of(shown_map),
-        figures=[] if answer else _figures(found, units),
+        figures=_figures(found, units) if failed and not answer else [],
+        overview=None if answer else overview,
+        engine=index.get("engine", ""),
+        file=index.get("file", ""),
         answer=answer,
         drawings=_drawings(folder, answer) if answer else [],
     )
@@ -127,16 +133,6 @@ def _rerun(folder: Path, index: dict[str, Any], *, is_answer: bool) -> str:
         return ""
     words = ["seatrial", "campaign", "rerun", index["file"], "--engine", index["engine"]]
     return shlex.join([*words, "--asked" if is_answer else "--of", folder.name, "--case"]) + " "
-
-
-def _links(folder: Path, index: dict[str, Any]) -> dict[str, str]:
-    """Return the addresses of the cases that have a folder, by number: their reports."""
-    links = {}
-    for entry in index["cases"]:
-        name = str(entry["folder"])
-        page = f"{name}/{REPORT}" if (folder / name / REPORT).is_file() else f"{name}/"
-        links[str(int(name.partition("-")[0]))] = quote(page)
-    return links
 
 
 def _drawings(folder: Path, answer: Finding) -> list[Markup]:

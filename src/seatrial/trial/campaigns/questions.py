@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import Any, Literal
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from ...system.files import FileModel
-from .distributions import Distribution
+from .distributions import Distribution, Written
 
 
 class LimitsQuestion(FileModel):
@@ -42,6 +42,36 @@ class SensitivityQuestion(FileModel):
     """Of Morris's effects, each with as many runs as keys and one more."""
 
 
+class Objective(FileModel):
+    """A column of the table that gains are tuned for, over the cases of a candidate."""
+
+    maximise: str | None = None
+    """Such as "robustness of NAME" and "last hull.position.x"; one of these two."""
+    minimise: str | None = None
+    """Such as "worst of NAME"."""
+    over: str = "worst"
+    """Of the cases: worst, mean, or "quantile 90 %": as good in so many of them."""
+
+    @model_validator(mode="after")
+    def _one(self) -> Objective:
+        if (self.maximise is None) == (self.minimise is None):
+            raise ValueError('either maximise = "COLUMN" or minimise = "COLUMN" is needed')
+        return self
+
+
+class TuneQuestion(FileModel):
+    """Which values of gains, or of a design, are the best over all that varies?"""
+
+    keys: dict[str, list[Written]] = Field(default_factory=dict)
+    """Low and high end of each."""
+    objectives: list[Objective] = Field(default_factory=list)
+    """Several have a Pareto front; empty: the least robustness of all criteria."""
+    candidates: int = Field(default=60, ge=10, le=10_000)
+    """Sets of values that are tried."""
+    cases: int = Field(default=10, ge=1, le=10_000)
+    """Runs of each candidate, the same for all: points of the varied keys."""
+
+
 class WorstCaseQuestion(FileModel):
     """Which case is the worst, and how small a change from nominal fails?"""
 
@@ -69,4 +99,5 @@ class Questions(FileModel):
     limits: LimitsQuestion | None = None
     rare: RareQuestion | None = None
     sensitivity: SensitivityQuestion | None = None
+    tune: TuneQuestion | None = None
     worst_case: WorstCaseQuestion | None = Field(default=None, alias="worst-case")

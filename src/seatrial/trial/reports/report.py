@@ -25,6 +25,7 @@ from .dark import DARK
 from .decks import deck, pads
 from .diagram import diagram
 from .event_marks import events_of, happenings
+from .metrics_section import metrics_figure, metrics_of
 from .parameter_tables import parameter_tables, value_text
 from .plotly_js import plotly_js
 from .plots import MAX_POINTS, Line, Mark, Panel, deck_figure, time_figure, track_figure
@@ -117,6 +118,7 @@ def write_report(
     run = load_run(folder)
     played = None if play is None else play(run)
     convergence = load_convergence(run.folder)
+    metrics = metrics_of(run)
     page = render(
         "report.html.j2",
         library=library,
@@ -126,6 +128,8 @@ def write_report(
         manifest=run.manifest,
         title=run.manifest["trial"].get("title") or run.name,
         verdicts=run.verdicts,
+        metrics=metrics,
+        metrics_figure=metrics_figure(run, metrics),
         sections=list(_sections(run)),
         parameters=list(parameter_tables(run)),
         timing=list(_flat({k: v for k, v in run.timing.items() if k not in _OWN_TABLES})),

@@ -34,11 +34,15 @@ typedef struct { /* all that changes; the components' own states come behind it 
     int failed;
 } State;
 
+typedef struct Work { /* operations, bound to the instance that carries them out */
+    Operation operations[OPERATIONS + 1];
+    Times times; /* of nobody: nothing is timed */
+} Work;
+
 typedef struct {
     State state;
     Master master;
-    Operation operations[OPERATIONS + 1];
-    Times times; /* of nobody: nothing is timed */
+    Work *work, *own_work; /* where it carries out operations; that of its own, if it has one */
     fmi2Component components[NODES + 1];
     volatile int32_t said;
     fmi2CallbackLogger log;
@@ -58,6 +62,17 @@ static void say(Rig *self, const char *format, ...) {
 #include "operations.inc"
 #include "values.inc"
 #include "state.inc"
+
+fmi2Status rig_read(fmi2Component c, const fmi2ValueReference vr[], size_t count, double values[]) {
+    Rig *self = c;
+    fmi2Status status = refresh(self);
+    for (size_t i = 0; i < count && status <= fmi2Warning; i++) {
+        const Variable *variable = rig_variables + vr[i];
+        if (variable->kind == OUTPUT_VALUE) values[i] = self->state.signals[variable->place];
+        else status = get_one(self, vr[i], variable->type, values + i, NULL);
+    }
+    return status;
+}
 
 /* Let another value take the place of an output for all its readers, or end that; between steps. */
 void rig_override(fmi2Component c, fmi2ValueReference output, int begins, double value) {
@@ -79,14 +94,20 @@ void rig_override(fmi2Component c, fmi2ValueReference output, int begins, double
 
 /* ------------------------------------------------------------------ life */
 
+/* Let an instance carry out its operations where others do too, one after the other. */
+void rig_lend(fmi2Component c, Work *work) {
+    Rig *self = c;
+    free(self->own_work);
+    self->own_work = NULL, self->work = work;
+}
+
 fmi2Component rig_component(fmi2Component c, int node) { return ((Rig *)c)->components[node]; }
 
 /* Return to before the initialisation, with the values that the rig gives. */
 static fmi2Status begin_anew(Rig *self) {
     memset(&self->state, 0, sizeof self->state);
     heed_overrides(self);
-    for (int i = 0; i < OPERATIONS; i++)
-        self->operations[i].relaxation = 1.0, self->operations[i].has_previous = 0;
+    for (int i = 0; i < LOOPS; i++) self->state.relaxations[i] = 1.0;
     for (int i = 0; i < GIVEN; i++) {
         const Given *given = rig_given + i;
         const fmi2Status status =
@@ -114,6 +135,7 @@ void fmi2FreeInstance(fmi2Component c) {
     if (!self) return;
     for (int i = 0; i < NODES; i++)
         if (self->components[i]) rig_nodes[i].carrier->free_instance(self->components[i]);
+    free(self->own_work);
     free(self);
 }
 
@@ -134,7 +156,11 @@ fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String guid, f
         fmi2FreeInstance(self);
         return NULL;
     }
-    for (int i = 0; i < OPERATIONS; i++) prepare(self, self->operations + i, rig_rows + i);
+    self->work = self->own_work = rig_new_work();
+    if (!self->work) {
+        fmi2FreeInstance(self);
+        return NULL;
+    }
     self->master.signals = self->state.signals;
     self->master.step_ns = STEP_NS;
     self->master.said = &self->said;
@@ -222,9 +248,10 @@ fmi2Status fmi2DoStep(fmi2Component c, fmi2Real t, fmi2Real h, fmi2Boolean no_ea
     if (count == 0) return fmi2OK;
     fmi2Status status = refresh(self);
     if (status <= fmi2Warning) {
-        m->operations = self->operations + STEPS, m->count = OPERATIONS - STEPS, m->at = 0;
+        bind(self, STEPS, OPERATIONS);
         m->steps = state->steps, m->begin_ns = state->now_ns;
         status = outcome(self, master_run(m, m->steps + count));
+        unbind(self, STEPS, OPERATIONS);
         state->steps = m->steps, state->now_ns = m->begin_ns;
     }
     state->failed = status > fmi2Warning;

@@ -46,6 +46,14 @@ typedef struct {
 /* A component of an instance, as its own functions take it. */
 fmi2Component rig_component(fmi2Component rig, int node);
 
+/* Operations of any instance, to lend to several, or to free; NULL without memory. */
+typedef struct Work Work;
+Work *rig_new_work(void);
+void rig_lend(fmi2Component rig, Work *work);
+
+/* Values of numbers, of any type. */
+fmi2Status rig_read(fmi2Component rig, const fmi2ValueReference vr[], size_t count, double values[]);
+
 void rig_override(fmi2Component rig, fmi2ValueReference output, int begins, double value);
 
 extern const Node rig_nodes[];

@@ -331,7 +331,8 @@ class Unit:
             self.queues[name], self.changed = wider, True
         frame.needs([name])
         frame.stores([name])
-        at = frame.num("i", f"appended(self, &M.{name}_q, {frame.place()})")
+        ring = f"&M.{name}_q, M.{name}_e, sizeof M.{name}_e[0]"
+        at = frame.num("i", f"appended(self, {ring}, {frame.place()})")
         texts = flattened(storable(frame, value), wider)
         for place, (kind, text) in enumerate(zip(leaves(wider), texts, strict=True)):
             if text is not None:
