@@ -480,6 +480,7 @@ SLOW = {
     "videoray-actuation",
     "hydrone-three-variants",
     "vehicles-campaign",
+    "native-trials",
     *(f"videoray-rejection{part}" for part in ("", "-table75", "-table81")),
 }
 

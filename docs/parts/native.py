@@ -8,7 +8,12 @@ from parts import part
 from parts.markdown import table
 from seatrial.fmi.components.index import component_class, components
 from seatrial.model.plant import Plant
+from seatrial.shipped import available
+from seatrial.trial.files.trial import load_trial
+from seatrial.trial.running.hooks import Hooks
+from seatrial.trial.running.preparation import prepare
 from seatrial_kits.native.carriers import why_python
+from seatrial_kits.native.engine import in_python
 
 
 @part("native-components")
@@ -28,6 +33,25 @@ def native_components() -> str:
         *(["Python", _listed(names), reason] for reason, names in sorted(reasons.items())),
     ]
     return table(["carrier", "components", "why"], rows)
+
+
+@part("native-trials")
+def native_trials() -> str:
+    """Return the shipped trials that are wholly in C, and what keeps the others from it."""
+    whole: list[str] = []
+    kept: dict[tuple[str, str], list[str]] = {}
+    for name in sorted(available("harness/trials")):
+        system = prepare(load_trial(name), "direct", Hooks()).system
+        reasons = in_python(system)
+        if not reasons:
+            whole.append(name)
+        for reason, parts in reasons.items():
+            for kind in {system.parts[part].fmu for part in parts}:
+                kept.setdefault((kind, _short(reason)), []).append(name)
+        system.discard()
+    rows = [[f"wholly in C ({len(whole)})", "", _listed(whole)]]
+    rows += [[f"`{kind}`", why, _listed(names)] for (kind, why), names in sorted(kept.items())]
+    return table(["in Python", "why", "trials"], rows)
 
 
 def _listed(names: list[str]) -> str:

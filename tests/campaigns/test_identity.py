@@ -2,6 +2,7 @@
 
 import hashlib
 import json
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -17,6 +18,7 @@ from seatrial.trial.campaigns.shipment import packed, unpacked
 from seatrial.trial.campaigns.sweep import How, run_sweep
 from seatrial.trial.files.trial import load_trial
 from seatrial.trial.records.compare import compare
+from seatrial.trial.records.identity import identity_of_run
 from seatrial.trial.records.run_folder import read_manifest
 from seatrial.trial.running.run import run_trial
 from tests.command import seatrial
@@ -164,6 +166,18 @@ def test_what_is_beside_them_decides_nothing(project):
     (project / "parts/Sum/out").mkdir(parents=True)
     (project / "parts/Sum/out/manifest.json").write_text("{}", "utf-8")
     assert not identity_of(campaign_of(project)).changed(before.content())
+
+
+def test_what_code_names_of_the_system_is_no_content_and_is_not_waited_for(project, tmp_path):
+    os.mkfifo(project / "parts/pipe")
+    (tmp_path / "elsewhere").mkdir()
+    (tmp_path / "elsewhere/large.csv").write_text("1", "utf-8")
+    names = ["/proc", "/dev", "/dev/shm", "/", "/proc/kmsg", "pipe", str(tmp_path / "elsewhere")]
+    (file,) = (project / "parts").glob("helping.py")
+    file.write_text(f"{file.read_text('utf-8')}\nNAMES = {names}\n", "utf-8")
+    (case, *_) = campaign_of(project).cases()
+    found = identity_of_run(case.trial).files["t"]
+    assert {Path(name).name for name in found} & {"kmsg", "pipe", "large.csv"} == set()
 
 
 def table(folder):

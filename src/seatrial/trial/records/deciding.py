@@ -25,6 +25,8 @@ _SHIPPED = ("fmus", "harness", "hil_profiles", "vehicles")
 _NAMED = re.compile(r".+?\.(?:fmu|py|toml)(?=[.:]|$)")
 """The file in ``boat.py:Boat`` and ``boat.toml.hull``."""
 _LEFT_OUT = {"runs", "__pycache__", "node_modules", "site-packages"}
+_OF_THE_SYSTEM = tuple(Path(each) for each in ("/proc", "/sys", "/dev", "/run"))
+"""Folders whose files are no content, and may never end."""
 _SKETCH = ".ino"
 _MODULE = ".py"
 
@@ -41,7 +43,8 @@ def deciding_files(
     The trials, their rigs, vehicles, profiles and their data sheets, components with the modules
     that they import, FMUs, what ``above`` names; and files and folders that a text in one of these
     names by a path from its own folder, of a sketch its whole folder. Shipped files, those of kits,
-    what is unpacked in the cache, and those ``apart`` are not among them.
+    what is unpacked in the cache, the system's own, and those ``apart`` are not among them, nor are
+    folders that code names by an absolute path: ``/home/me`` in it may be anything.
     """
     pending = [path.resolve() for path in above]
     for chosen in trials:
@@ -76,7 +79,8 @@ def files_in(top: Path) -> Iterator[Path]:
         if "campaign.json" in names or "manifest.json" in names:  # what runs have left
             folders.clear()
             continue
-        yield from (Path(folder, name) for name in sorted(names) if not name.startswith("."))
+        files = (Path(folder, name) for name in sorted(names) if not name.startswith("."))
+        yield from (file for file in files if file.is_file())
 
 
 def found_by_name(rig: Rig) -> Iterator[tuple[str, str, Path]]:
@@ -118,7 +122,13 @@ def _named_by(path: Path, is_absolute_too: bool) -> Iterator[Path]:
         except (SyntaxError, ValueError):
             return
         constants = [node.value for node in nodes if isinstance(node, ast.Constant)]
-        yield from named_in(constants, path.parent, is_absolute_too)
+        absolute = {
+            text for text in constants if isinstance(text, str) and Path(text).is_absolute()
+        }
+        yield from named_in([c for c in constants if c not in absolute], path.parent, False)
+        if is_absolute_too:
+            found = named_in(sorted(absolute), path.parent, True)
+            yield from (named for named in found if named.is_file())
 
 
 def named_in(content: Any, folder: Path, is_absolute_too: bool) -> Iterator[Path]:
@@ -128,10 +138,12 @@ def named_in(content: Any, folder: Path, is_absolute_too: bool) -> Iterator[Path
         name = match[0] if match else text
         try:
             named = (folder / name).resolve()
-            is_there = Path(name).name not in ("", ".", "..") and named.exists()
+            is_content = named.is_file() or named.is_dir()  # no pipe, no device
+            is_there = Path(name).name not in ("", ".", "..") and is_content
         except (OSError, ValueError):  # of a text that can be no path
             continue
-        if is_there and (is_absolute_too or not Path(name).is_absolute()):
+        is_ours = is_there and not any(map(named.is_relative_to, _OF_THE_SYSTEM))
+        if is_ours and (is_absolute_too or not Path(name).is_absolute()):
             yield named.parent if named.suffix == _SKETCH else named
 
 
