@@ -46,7 +46,7 @@ def native_trials() -> str:
         if not reasons:
             whole.append(name)
         for reason, parts in reasons.items():
-            for kind in {system.parts[part].fmu for part in parts}:
+            for kind in {system.parts[each].fmu for each in parts}:
                 kept.setdefault((kind, _short(reason)), []).append(name)
         system.discard()
     rows = [[f"wholly in C ({len(whole)})", "", _listed(whole)]]

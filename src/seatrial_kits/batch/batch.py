@@ -7,20 +7,20 @@ import weakref
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from types import TracebackType
-from typing import Any
-
-import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from typing import TYPE_CHECKING, Any
 
 from seatrial.api.signal import Signal
 from seatrial.api.simulation import assembled, described
 from seatrial.errors import InputError, SimulationError
-from seatrial_kits.native.surroundings import NOTHING, Met
 
-from .program import program_of
-from .settings import Settings, give_built_in
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import ArrayLike, NDArray
 
-Floats = NDArray[np.float64]
+    from seatrial_kits.native.surroundings import Met
+
+    Floats = NDArray[np.float64]
+
 MOST_THREADS = 64
 
 
@@ -58,11 +58,16 @@ class Batch:
         choices: Mapping[str, str] | None = None,
         threads: int = 1,
     ) -> None:
+        import numpy as np
+
         if count < 1:
             raise InputError(f"Batch: the count is {count}, at least 1 is needed")
         if not 1 <= threads <= MOST_THREADS:
             raise InputError(f"Batch: threads is {threads}, allowed 1 to {MOST_THREADS}")
         self.count, self.threads = count, threads
+        from .program import program_of
+        from .settings import Settings, give_built_in
+
         self.seeds = self._seeds(seed)
         """Of each copy."""
         self.system = assembled(rig, variant=variant, engine="native", step=step, choices=choices)
@@ -92,6 +97,8 @@ class Batch:
     @property
     def time(self) -> Floats:
         """Simulated time of each copy, s, shape (count,)."""
+        import numpy as np
+
         return np.asarray(self._times()[0] * self.step_size, dtype=np.float64)
 
     def step(self, count: int = 1) -> None:
@@ -104,6 +111,8 @@ class Batch:
     @property
     def failures(self) -> dict[int, str]:
         """By number of each copy that cannot go on: why."""
+        import numpy as np
+
         failed = np.flatnonzero(self._times()[1])
         message = self._library.batch_message
         return {int(i): message(self._batch, int(i)).decode() for i in failed}
@@ -131,6 +140,8 @@ class Batch:
         Shape (count,) of one scalar; (count, n) of a port with n elements, or of several names,
         side by side. Numbers alone: true is 1.0. Raises InputError.
         """
+        import numpy as np
+
         self._refuse_closed()
         references = self._settings.read(names)
         values = np.empty((self.count, len(references)))
@@ -187,6 +198,8 @@ class Batch:
         copies, or an array with a row for each. ``seed`` replaces the seeds of these copies.
         Raises InputError, naming what is built into the program: texts and structure.
         """
+        import numpy as np
+
         self._refuse_closed()
         chosen = self._mask(mask)
         seeds = self.seeds if seed is None else self._seeds(seed)
@@ -212,6 +225,8 @@ class Batch:
         ``source`` (count,) says from which copy's state each goes on, if not from its own.
         Settings of a copy come with its state. Raises InputError.
         """
+        import numpy as np
+
         self._refuse_closed()
         if state.batch is not self:
             raise InputError("restore: this is the state of another batch")
@@ -252,6 +267,10 @@ class Batch:
     # ------------------------------------------------------------------ inside
 
     def _start(self, chosen: NDArray[np.bool_]) -> None:
+        import numpy as np
+
+        from seatrial_kits.native.surroundings import NOTHING
+
         references, values = self._settings.rows(self.seeds)
         for name, met in self._settings.surroundings(chosen).items():
             of_all = self._met.setdefault(name, [None] * self.count)
@@ -269,6 +288,8 @@ class Batch:
                 )
 
     def _seeds(self, seed: int | Sequence[int]) -> NDArray[np.int64]:
+        import numpy as np
+
         given = np.asarray(seed)
         if given.dtype.kind not in "iu" or given.shape not in ((), (self.count,)):
             raise InputError(
@@ -278,6 +299,8 @@ class Batch:
         return given + np.arange(self.count) if given.shape == () else given.astype(np.int64)
 
     def _mask(self, mask: ArrayLike | None) -> NDArray[np.bool_]:
+        import numpy as np
+
         if mask is None:
             return np.ones(self.count, dtype=bool)
         chosen = np.ascontiguousarray(mask)
@@ -289,6 +312,8 @@ class Batch:
         return chosen
 
     def _times(self) -> tuple[NDArray[np.int64], NDArray[np.bool_]]:
+        import numpy as np
+
         self._refuse_closed()
         steps, failed = np.empty(self.count, dtype=np.int64), np.empty(self.count, dtype=bool)
         self._library.batch_times(self._batch, _at(steps), _at(failed))
