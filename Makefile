@@ -15,7 +15,7 @@ NODE_TOOLS := tests/interop/node/node_modules/.installed
 # the environment says: hundreds of tests start processes.
 PYTEST := OPENBLAS_NUM_THREADS=1 PYTHONDONTWRITEBYTECODE= $(BIN)/python -m pytest -n auto --dist worksteal
 
-.PHONY: demo test test-slow test-long test-firmware fuzz mutate lint docs fmus benchmark release clean
+.PHONY: demo test test-pages test-slow test-long test-firmware fuzz mutate lint docs fmus benchmark release clean
 
 $(INSTALLED): pyproject.toml
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \
@@ -49,6 +49,10 @@ $(NODE_TOOLS): tests/interop/node/package-lock.json
 # an hour. What takes longer still.
 test: $(INSTALLED)
 	$(PYTEST) -m "not slow and not interop and not long"
+
+# Examples, tables and commands of the pages and the README, the wheel: what CI runs beside `test`.
+test-pages: $(INSTALLED)
+	$(PYTEST) -m "not long" tests/test_docs.py tests/test_readme.py tests/test_wheel.py
 
 test-slow: $(INSTALLED) $(NODE_TOOLS)
 	$(PYTEST) -m "(slow or interop) and not long"
