@@ -11,7 +11,6 @@ from seatrial_kits.native.engine import in_python
 
 WHOLLY_NATIVE = [
     "bluerov2-course-box",
-    "gloria-triangle",
     "hydrone-course-square",
     "hydrone-deck-landing-waves",
     "hydrone-landing",

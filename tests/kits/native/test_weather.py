@@ -168,7 +168,7 @@ def test_an_fmu_for_any_host_has_no_weather(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", ["hydrone-landing-waves", "mariner-seaway", "videoray-waves"])
+@pytest.mark.parametrize("name", ["hydrone-landing-waves", "mariner-seaway"])
 def test_a_shipped_trial_in_waves_is_wholly_native_with_the_same_record(
     name: str, tmp_path: Path
 ) -> None:

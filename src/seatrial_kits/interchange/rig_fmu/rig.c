@@ -34,10 +34,10 @@ typedef struct { /* all that changes; the components' own states come behind it 
     int failed;
 } State;
 
-typedef struct Work { /* operations, bound to the instance that carries them out */
+struct Work { /* operations, bound to the instance that carries them out */
     Operation operations[OPERATIONS + 1];
     Times times; /* of nobody: nothing is timed */
-} Work;
+};
 
 typedef struct {
     State state;
