@@ -480,7 +480,7 @@ SLOW = {
     "videoray-actuation",
     "hydrone-three-variants",
     "vehicles-campaign",
-    "native-trials",
+    "native-carried",
     *(f"videoray-rejection{part}" for part in ("", "-table75", "-table81")),
 }
 

@@ -35,7 +35,7 @@ def native_components() -> str:
     return table(["carrier", "components", "why"], rows)
 
 
-@part("native-trials")
+@part("native-carried")
 def native_trials() -> str:
     """Return the shipped trials that are wholly in C, and what keeps the others from it."""
     whole: list[str] = []
