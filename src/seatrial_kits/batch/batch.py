@@ -66,15 +66,16 @@ class Batch:
             raise InputError(f"Batch: threads is {threads}, allowed 1 to {MOST_THREADS}")
         self.count, self.threads = count, threads
         from .program import program_of
-        from .settings import Settings, give_built_in
+        from .settings import Settings, give_built_in, take_weather
 
         self.seeds = self._seeds(seed)
         """Of each copy."""
         self.system = assembled(rig, variant=variant, engine="native", step=step, choices=choices)
         try:
             of_copies = give_built_in(self.system, set or {})
+            weather = take_weather(self.system)
             program = program_of(self.system)
-            self._settings = Settings(self.system, program.references, count)
+            self._settings = Settings(self.system, program.references, count, weather)
             self._settings.change(of_copies, "set")
         except BaseException:
             self.system.discard()
@@ -203,9 +204,14 @@ class Batch:
         self._refuse_closed()
         chosen = self._mask(mask)
         seeds = self.seeds if seed is None else self._seeds(seed)
-        self._settings.change(set or {}, "reset", chosen)
-        self.seeds = np.where(chosen, seeds, self.seeds)
-        self._start(chosen)
+        before = self.seeds, self._settings.change(set or {}, "reset", chosen)
+        try:
+            self.seeds = np.where(chosen, seeds, self.seeds)
+            self._start(chosen)
+        except InputError:
+            self.seeds = before[0]
+            self._settings.undo(before[1])
+            raise
 
     def save(self) -> BatchState:
         """Return the states of all copies. Raises SimulationError without memory for them."""

@@ -18,7 +18,7 @@ from seatrial.system.part import Part
 from seatrial.system.system import System
 from seatrial.system.values import check_limits, from_written, port_names, port_scalars
 from seatrial_kits.native.surroundings import Met, is_surrounded, surroundings_of
-from seatrial_kits.native.tables import is_built_in
+from seatrial_kits.native.tables import WEATHER_ROLES, is_built_in
 
 Floats = NDArray[np.float64]
 
@@ -29,8 +29,15 @@ class Settings:
     They begin as the rig gives them; what is set at a start stays for the starts that follow.
     """
 
-    def __init__(self, system: System, references: Mapping[str, int], count: int) -> None:
+    def __init__(
+        self,
+        system: System,
+        references: Mapping[str, int],
+        count: int,
+        weather: Mapping[str, Mapping[str, str]],
+    ) -> None:
         self._system, self._references, self._count = system, references, count
+        self._weather = weather
         self._sources = {part.name: _source(system, part) for part in system.parts.values()}
         self._rows: dict[str, Floats] = {}
         """What was set, by scalar, each (count,)."""
@@ -129,8 +136,8 @@ class Settings:
 
     def change(
         self, settings: Mapping[str, Any], call: str, mask: NDArray[np.bool_] | None = None
-    ) -> None:
-        """Take over what copies, those of ``mask``, start with from now on.
+    ) -> dict[str, Floats]:
+        """Take over what copies, those of ``mask``, start with from now on; return what was before.
 
         Raises InputError, and changes nothing then.
         """
@@ -143,9 +150,15 @@ class Settings:
                         f"{call}: {whole} is built into the program; give it to Batch's set"
                     )
             changed |= given
+        before, self._rows = self._rows, dict(self._rows)
         for whole, rows in changed.items():
-            before = self._rows.get(whole, np.full(self._count, self._as_given(whole)))
-            self._rows[whole] = rows if mask is None else np.where(mask, rows, before)
+            own = before.get(whole, np.full(self._count, self._as_given(whole)))
+            self._rows[whole] = rows if mask is None else np.where(mask, rows, own)
+        return before
+
+    def undo(self, before: dict[str, Floats]) -> None:
+        """Go back to what `change` returned."""
+        self._rows = before
 
     def _as_given(self, whole: str) -> float:
         """Return what the rig gives a scalar."""
@@ -170,7 +183,8 @@ class Settings:
             if source is None:
                 continue
             part = self._system.parts[name]
-            values = {own: given.value for own, given in part.given.items()}
+            values: dict[str, Any] = {own: given.value for own, given in part.given.items()}
+            values |= self._weather[name]
             changed = {
                 whole.removeprefix(f"{name}."): rows
                 for whole, rows in self._rows.items()
@@ -224,6 +238,22 @@ def give_built_in(system: System, settings: Mapping[str, Any]) -> dict[str, Any]
         else:
             rest[name] = value
     return rest
+
+
+def take_weather(system: System) -> dict[str, dict[str, str]]:
+    """Take the texts of waves, current and wind from plants that meet them; return them by plant.
+
+    Their programs know nothing of them: `Settings` evaluates the weather, of each copy its own.
+    """
+    taken: dict[str, dict[str, str]] = {}
+    for part in system.parts.values():
+        if _source(system, part) is None:
+            continue
+        variables = part.instance.variables
+        names = [n for n in part.given if variables[n].type is str]
+        names = [n for n in names if variables[n].role in WEATHER_ROLES]
+        taken[part.name] = {n: str(part.given.pop(n).value) for n in names}
+    return taken
 
 
 def _is_built_in(system: System, whole: str, scalar: Variable) -> bool:

@@ -273,6 +273,26 @@ def test_what_cannot_begin_is_refused(given, message: str, rig: Path) -> None:
         Batch(rig, **given)
 
 
+def test_each_copy_of_a_shipped_rig_has_a_sea_of_its_own() -> None:
+    sea = {"hull.sea_height": np.array([0.1, 0.3]), "hull.sea_period": np.array([3.0, 2.0])}
+    common = {"hull.sea_spectrum": "jonswap", "hull.wind_speed": 3.0}
+    with Batch("hydrone-open-loop", 2, set={**sea, **common}) as batch:
+        batch.step(100)
+        names = [n for n, signal in batch.signals.items() if signal.type is not str]
+        found = batch.get(*names)
+        with pytest.raises(InputError, match=r"height is 0.0 m, more than 0 is needed"):
+            batch.reset(set={"hull.sea_height": np.array([0.1, 0.0])})
+        assert (batch.get(*names) == found).all()
+        batch.reset()
+        batch.step(100)
+        assert (batch.get(*names) == found).all()
+    for i in range(2):
+        own = {name: float(values[i]) for name, values in sea.items()}
+        with Simulation("hydrone-open-loop", engine="native", seed=1 + i, set=common | own) as one:
+            one.step(100)
+            assert [float(one.get(n)) for n in names] == found[i].tolist()
+
+
 def test_a_rig_with_python_in_it_is_refused_by_the_component(tmp_path: Path) -> None:
     path = tmp_path / "bus.toml"
     path.write_text('step = "10 ms"\n[components]\nbus = { fmu = "canbus" }\n', "utf-8")
