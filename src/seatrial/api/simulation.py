@@ -11,17 +11,15 @@ from types import TracebackType
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from ..errors import InputError, SimulationError, unknown
-from .signal import Signal
-from .written import as_duration, as_engine, as_settings, as_written
+from .assembling import Origin, assembled, begun, cannot_start_anew, give, meet_weather, started
+from .signal import Signal, described
+from .written import as_duration, as_settings, as_written
 
 if TYPE_CHECKING:
     from ..fmi.instance import Variable
     from ..sim.actions import ActionKind
     from ..sim.fault_schedule import Fault
     from ..sim.master import Master, Snapshot
-    from ..system.part import Part
-    from ..system.rig import Rig
-    from ..system.system import System
     from .recording import Recording
 
 Observer = TypeVar("Observer", bound=Callable[..., object])
@@ -48,6 +46,8 @@ class State:
         """The simulation that saved it, and that alone can restore it."""
         self.snapshot = snapshot
         """What the master keeps."""
+        self.origin = simulation._origin
+        """What the simulation had started with."""
 
 
 class Simulation:
@@ -93,10 +93,11 @@ class Simulation:
                 rig, set, seed=seed, variant=variant, engine=engine, step=step, choices=choices
             )
             try:
-                self._master = _started(system)
+                self._master = started(system)
             except BaseException:
                 system.discard()
                 raise
+        self._origin = Origin.of(system)
         self._free = weakref.finalize(self, system.discard)
 
     # ------------------------------------------------------------------ time
@@ -253,10 +254,10 @@ class Simulation:
         from .recording import Recording
 
         wanted = {name for pattern in patterns or ("*",) for name in self._matching(pattern)}
-        described = [signal for name, signal in self.signals.items() if name in wanted]
+        recorded = [signal for name, signal in self.signals.items() if name in wanted]
         places = {".".join(name): place for place, name in enumerate(self._master.names)}
-        chosen = [places[signal.name] for signal in described]
-        recording = Recording(described, lambda: [self._master.signals[place] for place in chosen])
+        chosen = [places[signal.name] for signal in recorded]
+        recording = Recording(recorded, lambda: [self._master.signals[place] for place in chosen])
         recording(self)
         return self.observe(recording)
 
@@ -274,22 +275,20 @@ class Simulation:
 
         self._refuse_closed()
         system = self._master.system
-        if stuck := [name for name, part in system.parts.items() if not _starts_anew(part)]:
+        if stuck := cannot_start_anew(system):
             raise InputError(f"reset: {', '.join(stuck)} cannot start anew; make a new simulation")
-        before = system.seed, {part.name: dict(part.given) for part in system.parts.values()}
+        before = self._origin
         try:
             with confined():
-                _give(system, as_settings(set), seed)
+                give(system, as_settings(set), seed)
                 self._error = "it could not start anew"
                 for part in system.parts.values():
                     part.instance.reset()
-                self._master = _begun(system)
+                self._master = begun(system)
         except BaseException:
-            system.seed = before[0]
-            for part in system.parts.values():
-                part.given = before[1][part.name]
+            before.give_back(system)
             raise
-        self._error = ""
+        self._origin, self._error = Origin.of(system), ""
 
     def save(self) -> State:
         """Return the whole state: time, components with their noise, overrides.
@@ -313,6 +312,10 @@ class Simulation:
         if state.simulation is not self:
             raise InputError("restore: this is the state of another simulation")
         self._error = "its state was not restored"
+        if state.origin is not self._origin:  # of before a reset: with the weather of then
+            state.origin.give_back(self._master.system)
+            meet_weather(self._master.system)
+            self._origin = state.origin
         self._master.restore(state.snapshot)
         self._error = ""
 
@@ -395,122 +398,3 @@ class Simulation:
         if names[0] not in self.signals:
             raise InputError(f"record: {pattern} is no output; outputs alone are recorded")
         return names
-
-
-def described(system: System, causality: str) -> dict[str, Signal]:
-    """Return the variables of a causality, by name, in the order of the rig."""
-    found = {}
-    for component, part in system.parts.items():
-        feeders = system.feeders(component)
-        for variable in part.instance.variables.values():
-            if variable.causality == causality:
-                name, feeder = f"{component}.{variable.name}", feeders.get(variable.name, "")
-                found[name] = _signal(name, variable, feeder)
-    return found
-
-
-def _signal(name: str, variable: Variable, feeder: str) -> Signal:
-    settable = variable.causality == "input" or variable.variability == "tunable"
-    return Signal(
-        name=name,
-        unit=variable.unit,
-        description=variable.description,
-        type=variable.type,
-        minimum=variable.minimum,
-        maximum=variable.maximum,
-        tunable=settable and variable.causality != "output" and not feeder,
-        feeder=feeder,
-    )
-
-
-def assembled(
-    rig: str | Path,
-    settings: Mapping[str, Any] | None = None,
-    *,
-    seed: int = 1,
-    variant: str | None = None,
-    engine: str = "direct",
-    step: float | str | None = None,
-    choices: Mapping[str, str] | None = None,
-) -> System:
-    """Return the system of a rig with its parameters, as `Simulation` takes them, not started.
-
-    Raises InputError for bad input.
-    """
-    from ..system.assembly import assemble
-    from ..system.isolation import KEY_END, isolated_in, isolating
-
-    given = as_settings(settings)
-    loaded = _loaded_rig(str(rig), as_duration(step), choices)
-    system = assemble(
-        isolating(loaded, isolated_in(given, "set"), "set"),
-        as_engine(engine),
-        variant=variant,
-        seed=int(seed),
-    )
-    try:
-        for key, written in given.items():
-            if not key.endswith(KEY_END):
-                system.set(key, written, "set")
-    except BaseException:
-        system.discard()
-        raise
-    return system
-
-
-def _loaded_rig(name: str, step: Any, choices: Mapping[str, str] | None) -> Rig:
-    from ..shipped import available
-    from ..system.flattening import load_rig
-    from ..system.packages import is_package, read_package
-
-    if is_package(name):
-        if choices:
-            raise InputError(f"{name}: a package has no choices, found {', '.join(choices)}")
-        rig = read_package(Path(name).resolve(), {"step": step}).rig
-    else:
-        try:
-            rig = load_rig(name, None, choices)
-        except InputError as error:
-            if name in available("harness/trials"):
-                raise InputError(f"{name!r} is a trial: run_trial runs it; {error}") from None
-            raise
-    return rig if step is None else rig.changed({"step": step})
-
-
-def _give(system: System, settings: Mapping[str, Any], seed: int | None) -> None:
-    """Give a system further settings, and another seed. Raises InputError."""
-    from ..system.component_parameters import give_seed
-
-    if seed is not None:
-        system.seed = int(seed)
-        for part in system.parts.values():
-            give_seed(part, system.seed)
-    for key, written in settings.items():
-        system.set(key, written, "reset")
-
-
-def _starts_anew(part: Part) -> bool:
-    return part.is_sum or part.instance.restarts
-
-
-def _started(system: System) -> Master:
-    from ..plugins import service
-
-    if system.engine == "native":
-        service("native.carry")(system, weather=True)
-    return _begun(system)
-
-
-def _begun(system: System) -> Master:
-    from ..plugins import service
-    from ..sim.master import Master
-
-    if system.engine == "native":
-        service("native.meet_weather")(system)
-    master = Master(system)
-    try:
-        master.initialise()
-        system.refuse_wall_clock()
-    except SimulationError as error:
-        raise InputError(f"{system.rig.read_from.path}: the rig cannot start: {error}") from None
-    return master

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -62,6 +63,8 @@ from .stopping import stoppable
 from .twice import exit_unless, repeat
 from .watch import Watch
 
+_WITH_LIVE = "--port, --open and --live-control go with --live"
+
 
 def run(
     trial: Annotated[
@@ -106,8 +109,7 @@ def run(
     pace = {"factor": real_time, "overrun": overrun}
     pace = {key: value for key, value in pace.items() if value is not None}
     page = service("live.page_of")(port, open_, hardware, live_control) if live else None
-    if page is None and (port or open_ or live_control):
-        raise InputError("--port, --open and --live-control go with --live")
+    _refuse_first({_WITH_LIVE: not live and (port or open_ or live_control)})
     leaves = Leaves(junit, not no_report)
     if is_campaign(trial):
         of_trials = {
@@ -118,9 +120,7 @@ def run(
             "--resume needs the campaign's folder, --out FOLDER": resume and out is None,
             "--rerun-changed goes with --resume": rerun_changed and not resume,
         }
-        for refusal, given in of_trials.items():
-            if given:
-                raise InputError(refusal)
+        _refuse_first(of_trials)
         how = How(chosen, jobs, resume, rerun_changed, cluster, keep, keep_going, twice)
         campaign = load_campaign(trial, changes, limits)
         _refuse_endless([block.base for block in campaign.cases().blocks], hardware)
@@ -137,6 +137,13 @@ def run(
     if twice:
         check_repeatable(loaded)
     _run_trial(loaded, out, chosen, page, leaves, keep_going, twice=twice)
+
+
+def _refuse_first(given: Mapping[str, object]) -> None:
+    """Raise InputError with the first refusal of which something is given."""
+    for refusal, what in given.items():
+        if what:
+            raise InputError(refusal)
 
 
 def _allow(hardware: bool, network: bool, keep_going: bool, twice: bool) -> None:

@@ -25,7 +25,7 @@
 typedef struct {
     fmi2Component rig;
     fmi2CallbackFunctions functions;
-    int64_t begin_ns, steps;
+    int64_t steps;
     int failed, started;
     char message[1024];
 } Copy;

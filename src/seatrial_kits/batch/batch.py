@@ -9,8 +9,8 @@ from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, Any
 
-from seatrial.api.signal import Signal
-from seatrial.api.simulation import assembled, described
+from seatrial.api.assembling import assembled
+from seatrial.api.signal import Signal, described
 from seatrial.errors import InputError, SimulationError
 
 if TYPE_CHECKING:
@@ -29,6 +29,8 @@ class BatchState:
 
     def __init__(self, batch: Batch, states: Any, steps: NDArray[np.int64]) -> None:
         self.batch, self.states, self.steps = batch, states, steps
+        self.met = {name: list(met) for name, met in batch._met.items()}
+        """What surrounds each plant that can meet weather, in each copy."""
 
 
 class Batch:
@@ -60,14 +62,14 @@ class Batch:
     ) -> None:
         import numpy as np
 
+        from .program import program_of
+        from .settings import Settings, give_built_in, take_weather
+
         if count < 1:
             raise InputError(f"Batch: the count is {count}, at least 1 is needed")
         if not 1 <= threads <= MOST_THREADS:
             raise InputError(f"Batch: threads is {threads}, allowed 1 to {MOST_THREADS}")
         self.count, self.threads = count, threads
-        from .program import program_of
-        from .settings import Settings, give_built_in, take_weather
-
         self.seeds = self._seeds(seed)
         """Of each copy."""
         self.system = assembled(rig, variant=variant, engine="native", step=step, choices=choices)
@@ -229,7 +231,7 @@ class Batch:
         """Let the copies of ``mask`` (count,), or all, go on from a state that this batch saved.
 
         ``source`` (count,) says from which copy's state each goes on, if not from its own.
-        Settings of a copy come with its state. Raises InputError.
+        Parameters and weather come with a state, until the copy starts anew. Raises InputError.
         """
         import numpy as np
 
@@ -245,6 +247,8 @@ class Batch:
                     f"restore: source has shape {numbers.shape} of {numbers.dtype}; {self.count} "
                     f"numbers of copies, 0 to {self.count - 1}, are needed"
                 )
+        for name, met in state.met.items():
+            self._surround(name, chosen, [met[copy] for copy in numbers.tolist()])
         origin = np.where(chosen, numbers, -1).astype(np.int64)
         self._library.batch_restore(self._batch, state.states, _at(origin), _at(state.steps))
 
@@ -273,17 +277,9 @@ class Batch:
     # ------------------------------------------------------------------ inside
 
     def _start(self, chosen: NDArray[np.bool_]) -> None:
-        import numpy as np
-
-        from seatrial_kits.native.surroundings import NOTHING
-
         references, values = self._settings.rows(self.seeds)
         for name, met in self._settings.surroundings(chosen).items():
-            of_all = self._met.setdefault(name, [None] * self.count)
-            node = self._nodes.index(name)
-            for copy in np.flatnonzero(chosen).tolist():
-                of_all[copy] = met[copy]
-                self._library.batch_surround(self._batch, copy, node, met[copy] or NOTHING)
+            self._surround(name, chosen, met)
         self._library.batch_start(
             self._batch, _at(chosen), _at(references), len(references), _at(values)
         )
@@ -292,6 +288,17 @@ class Batch:
                 raise InputError(
                     f"{self.system.rig.read_from.path}: copy {number} cannot start: {why}"
                 )
+
+    def _surround(self, name: str, chosen: NDArray[np.bool_], met: Sequence[Met | None]) -> None:
+        """Let a plant meet what surrounds it, in each chosen copy."""
+        from seatrial_kits.native.surroundings import NOTHING
+
+        of_all = self._met.setdefault(name, [None] * self.count)
+        node = self._nodes.index(name)
+        for copy in chosen.nonzero()[0].tolist():
+            if of_all[copy] is not met[copy]:
+                of_all[copy] = met[copy]
+                self._library.batch_surround(self._batch, copy, node, met[copy] or NOTHING)
 
     def _seeds(self, seed: int | Sequence[int]) -> NDArray[np.int64]:
         import numpy as np

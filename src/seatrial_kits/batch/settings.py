@@ -107,6 +107,7 @@ class Settings:
         for column, (whole, scalar) in enumerate(scalars):
             for copy in np.flatnonzero(~np.isfinite(numbers[:, column])):
                 raise InputError(f"{origin}: copy {copy} gets {numbers[copy, column]} for {whole}")
+            _require_type(scalar, numbers[:, column], origin)
             for furthest in {int(numbers[:, column].argmin()), int(numbers[:, column].argmax())}:
                 number = float(numbers[furthest, column])
                 check_limits(scalar, number, f"{origin}: copy {furthest}")
@@ -222,6 +223,19 @@ class Settings:
         for column, values in enumerate(given.values()):
             rows[:, column] = values
         return references, rows
+
+
+def _require_type(scalar: Variable, numbers: Floats, origin: str) -> None:
+    """Raise InputError for a number that is no value of the scalar's type."""
+    allowed = {bool: "0 or 1", int: "a whole number"}.get(scalar.type)
+    if allowed is None:
+        return
+    fits = (numbers == 0.0) | (numbers == 1.0) if scalar.type is bool else numbers % 1.0 == 0.0
+    for copy in np.flatnonzero(~fits):
+        raise InputError(
+            f"{origin}: copy {copy} gets {float(numbers[copy])!r} for {scalar.name}, {allowed} is "
+            "needed"
+        )
 
 
 def give_built_in(system: System, settings: Mapping[str, Any]) -> dict[str, Any]:

@@ -19,8 +19,8 @@ def carry_natively(
     To be called when all parameters are given: texts among them are built in, and waves, current
     and wind around a plant are those of its parameters then. FMUs come from the user's cache, and
     are built if they are not there. What has no C stays in process; there it is noted why, and
-    returned, components by reason. With ``weather`` plants are ready for waves, current and wind
-    that are not there yet. Raises InputError without a compiler.
+    returned, components by reason. With ``weather`` plants are ready for waves, current and wind,
+    which `meet_weather` lets them meet. Raises InputError without a compiler.
     """
     if system.engine != "native":
         return {}
@@ -81,8 +81,8 @@ def _carry(system: System, part: Part, weather: bool) -> str:
     require_compiler()
     values = {name: given.value for name, given in part.given.items()}
     try:
-        around = surroundings_of(source, values)
-        surrounded = around is not None or (weather and is_surrounded(source))
+        around = None if weather else surroundings_of(source, values)
+        surrounded = is_surrounded(source) if weather else around is not None
         fmu = load_fmu(native_fmu(source, values, surrounded=surrounded))
     except InputError as error:
         return str(error)

@@ -45,9 +45,10 @@ class Pilot(Component):
     place = Input("m", "where it is")
     speed = Input("m/s", "how fast it goes through the water, as the log says")
     wanted = Input("m", "where it shall be")
+    idle = Input("1", "whether it lets go", type=bool)
     force = Output("N", "force")
 
     def outputs(self, t):
         off = self.wanted - self.place
         far = 0.0 if abs(off) < self.reach else 1e200
-        self.force = self.gain * off - 2.0 * self.speed + far * far
+        self.force = 0.0 if self.idle else self.gain * off - 2.0 * self.speed + far * far

@@ -181,6 +181,29 @@ def test_copies_go_on_from_the_states_of_others(rig: Path) -> None:
             batch.restore(saved, source=np.array([0, 1, 2, 4]))
 
 
+def test_a_state_brings_the_stream_that_it_was_in(rig: Path) -> None:
+    """Of another copy, and of before a start in other water; of a single simulation, too."""
+    streams = np.array([0.0, 0.4, -0.6])
+    with Batch(rig, 3, set={"cork.current_speed": streams}, seed=[7, 7, 7]) as batch:
+        batch.step(20)
+        saved = batch.save()
+        batch.step(20)
+        wanted = batch.get(*batch.signals)
+        batch.reset(set={"cork.current_speed": np.array([0.9, 0.0, 0.9])})
+        batch.step(5)
+        batch.restore(saved, source=np.array([2, 0, 1]))
+        batch.step(20)
+        assert (batch.get(*batch.signals) == wanted[[2, 0, 1]]).all()
+    with Simulation(rig, engine="native", seed=7, set={"cork.current_speed": 0.4}) as one:
+        one.step(20)
+        state = one.save()
+        one.reset(set={"cork.current_speed": 0.0})
+        one.step(5)
+        one.restore(state)
+        one.step(20)
+        assert everything(one) == wanted[1].tolist()
+
+
 def test_a_copy_that_fails_ends_alone_with_its_message(rig: Path) -> None:
     reach = np.array([1e9, 0.5, 1e9])
     with Batch(rig, 3, set={"pilot.reach": reach}, threads=2) as batch:
@@ -216,6 +239,7 @@ def test_a_copy_that_fails_ends_alone_with_its_message(rig: Path) -> None:
         (lambda b: b.set("pilot.wanted", np.ones((3, 2))), r"has shape \(3, 2\)"),
         (lambda b: b.set("pilot.wanted", [1.0, math.nan, 0.0]), "copy 1 gets nan"),
         (lambda b: b.set("pilot.wanted", "2 kg"), "kg"),
+        (lambda b: b.set("pilot.idle", [0.0, 0.5, 1.0]), "copy 1 gets 0.5 for idle, 0 or 1 is"),
         (lambda b: b.set("pilot.wanted", 1.0, [True, False]), r"3 truths are needed"),
         (lambda b: b.set("pilot.wanted", 1.0, np.ones(3)), r"float64; 3 truths"),
         (
