@@ -34,11 +34,12 @@ class BatchState:
 
 
 class Batch:
-    """``count`` copies of a rig, all in compiled code, that the caller steps together.
+    """``count`` copies of a rig or a trial, all in compiled code, that the caller steps together.
 
     ``rig``, ``set``, ``variant``, ``step`` and ``choices`` are those of `seatrial.Simulation`; a
-    value of ``set`` may also be an array with a row for each copy. ``seed`` is the first copy's,
-    the next has the next one, or a sequence with a seed for each. ``threads`` share the copies.
+    value of ``set`` may also be an array with a row for each copy. ``seed`` is the first copy's
+    (None: the trial's, or 1), the next has the next one, or a sequence with a seed for each.
+    ``threads`` share the copies. Of a trial's faults a copy has those that fix an output.
 
     Copy i has the bytes of a `Simulation` with ``engine="native"``, its seed and its settings, on
     any number of threads. A copy that fails keeps its values and its message (`failures`) and is
@@ -54,7 +55,7 @@ class Batch:
         count: int,
         *,
         set: Mapping[str, Any] | None = None,
-        seed: int | Sequence[int] = 1,
+        seed: int | Sequence[int] | None = None,
         variant: str | None = None,
         step: float | str | None = None,
         choices: Mapping[str, str] | None = None,
@@ -62,23 +63,33 @@ class Batch:
     ) -> None:
         import numpy as np
 
+        from .course import Course
         from .program import program_of
-        from .settings import Settings, give_built_in, take_weather
+        from .settings import Settings, first_of, give_built_in, is_weather, take_weather
 
         if count < 1:
             raise InputError(f"Batch: the count is {count}, at least 1 is needed")
         if not 1 <= threads <= MOST_THREADS:
             raise InputError(f"Batch: threads is {threads}, allowed 1 to {MOST_THREADS}")
         self.count, self.threads = count, threads
-        self.seeds = self._seeds(seed)
-        """Of each copy."""
-        self.system = assembled(rig, variant=variant, engine="native", step=step, choices=choices)
+        given = dict(set or {})
+        weather_keys = {
+            key: first_of(value, count) for key, value in given.items() if is_weather(key)
+        }
+        made = assembled(
+            rig, weather_keys, variant=variant, engine="native", step=step, choices=choices
+        )
+        self._made, self.system = made, made.system
         try:
-            of_copies = give_built_in(self.system, set or {})
+            self.seeds = self._seeds(made.system.seed if seed is None else seed)
+            """Of each copy."""
+            rest = {k: v for k, v in given.items() if np.ndim(v) or not is_weather(k)}
+            of_copies = give_built_in(made, rest)
             weather = take_weather(self.system)
             program = program_of(self.system)
-            self._settings = Settings(self.system, program.references, count, weather)
+            self._settings = Settings(made, program.references, count, weather)
             self._settings.change(of_copies, "set")
+            self._course = Course(made, program.step_ns)
         except BaseException:
             self.system.discard()
             raise
@@ -109,7 +120,18 @@ class Batch:
         self._refuse_closed()
         if count < 0:
             raise InputError(f"step: the count is {count}, it cannot be negative")
-        self._library.batch_step(self._batch, count, min(self.threads, self.count))
+        threads = min(self.threads, self.count)
+        if not self._course:
+            self._library.batch_step(self._batch, count, threads)
+            return
+        before, failed = self._times()
+        while count and not failed.all():
+            ahead = self._course.ahead(before[~failed], count)
+            self._library.batch_step(self._batch, ahead, threads)
+            count -= ahead
+            steps, failed = self._times()
+            self._course.act(self, steps, steps > before)
+            before = steps
 
     @property
     def failures(self) -> dict[int, str]:
@@ -288,6 +310,7 @@ class Batch:
                 raise InputError(
                     f"{self.system.rig.read_from.path}: copy {number} cannot start: {why}"
                 )
+        self._course.act(self, self._times()[0], chosen)
 
     def _surround(self, name: str, chosen: NDArray[np.bool_], met: Sequence[Met | None]) -> None:
         """Let a plant meet what surrounds it, in each chosen copy."""

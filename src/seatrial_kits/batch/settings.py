@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from seatrial.api.assembling import Assembled
 from seatrial.api.written import as_written
 from seatrial.errors import InputError, unknown
 from seatrial.fmi.components.source import ComponentSource, find_source
@@ -31,18 +32,20 @@ class Settings:
 
     def __init__(
         self,
-        system: System,
+        made: Assembled,
         references: Mapping[str, int],
         count: int,
         weather: Mapping[str, Mapping[str, str]],
     ) -> None:
-        self._system, self._references, self._count = system, references, count
+        self._made, self._references, self._count = made, references, count
+        self._system = system = made.system
         self._weather = weather
         self._sources = {part.name: _source(system, part) for part in system.parts.values()}
         self._rows: dict[str, Floats] = {}
         """What was set, by scalar, each (count,)."""
         self._met: dict[tuple[Any, ...], Met | None] = {}
         self._seeded: tuple[NDArray[np.int64], dict[str, Floats]] = (np.empty(0, np.int64), {})
+        self._known: dict[tuple[str, ...], NDArray[np.uint32]] = {}
 
     # ------------------------------------------------------------------ names
 
@@ -52,8 +55,12 @@ class Settings:
 
     def read(self, names: Sequence[str]) -> NDArray[np.uint32]:
         """Return the references of outputs, open inputs and parameters. Raises InputError."""
-        found = [name for given in names for name, _ in self._scalars(given, "get")]
-        return np.array([self._references[name] for name in found], dtype=np.uint32)
+        known = self._known.get(tuple(names))
+        if known is None:
+            found = [name for given in names for name, _ in self._scalars(given, "get")]
+            known = np.array([self._references[name] for name in found], dtype=np.uint32)
+            self._known[tuple(names)] = known
+        return known
 
     def _scalars(self, name: str, call: str) -> list[tuple[str, Variable]]:
         part, port = self._system.located(name, call)[0]
@@ -143,7 +150,8 @@ class Settings:
         Raises InputError, and changes nothing then.
         """
         changed: dict[str, Floats] = {}
-        for name, value in settings.items():
+        named = {name: value for key, value in settings.items() for name in self._made.named(key)}
+        for name, value in named.items():
             given = self.given(name, value, call)
             for whole, scalar in self._scalars(name, call):
                 if _is_built_in(self._system, whole, scalar):
@@ -170,12 +178,18 @@ class Settings:
 
     def rows(self, seeds: NDArray[np.int64]) -> tuple[NDArray[np.uint32], Floats]:
         """Return references and rows of values that copies with these seeds start with."""
-        if not np.array_equal(seeds, self._seeded[0]):
-            self._seeded = seeds.copy(), self._of_seeds(seeds)
-        return self._stacked(self._seeded[1] | self._rows)
+        known, rows = self._seeded
+        other = np.ones(len(seeds), dtype=bool) if not len(known) else seeds != known
+        if other.any():
+            for name, values in self._of_seeds(seeds[other]).items():
+                rows.setdefault(name, np.empty(self._count))[other] = values
+            self._seeded = seeds.copy(), rows
+        return self._stacked(rows | self._rows)
 
     def surroundings(self, mask: NDArray[np.bool_]) -> dict[str, list[Met | None]]:
         """Return what surrounds each plant that can meet weather, in each copy of the mask.
+
+        `rows` has said the seeds of the copies.
 
         Raises InputError for a sea, a current or a wind that cannot be.
         """
@@ -188,7 +202,7 @@ class Settings:
             values |= self._weather[name]
             changed = {
                 whole.removeprefix(f"{name}."): rows
-                for whole, rows in self._rows.items()
+                for whole, rows in (self._seeded[1] | self._rows).items()
                 if whole.startswith(f"{name}.")
                 and whole.removeprefix(f"{name}.") in part.instance.variables
             }
@@ -210,7 +224,8 @@ class Settings:
 
     def _of_seeds(self, seeds: NDArray[np.int64]) -> dict[str, Floats]:
         """Return the seeds of components, as `give_parameters` derives them from a system's."""
-        found: dict[str, Floats] = {}
+        of_weather = seeds.astype(np.float64)
+        found: dict[str, Floats] = dict.fromkeys(self._made.weather_seeds, of_weather)
         for part in self._system.parts.values():
             for name, owner in derived_seeds(part).items():
                 own = [seed_of(owner, seed) for seed in seeds.tolist()]
@@ -238,19 +253,31 @@ def _require_type(scalar: Variable, numbers: Floats, origin: str) -> None:
         )
 
 
-def give_built_in(system: System, settings: Mapping[str, Any]) -> dict[str, Any]:
+def is_weather(key: str) -> bool:
+    """Say if a key is one of a trial's sea, current or wind."""
+    return key.partition(".")[0] in WEATHER_ROLES
+
+
+def first_of(value: Any, count: int) -> Any:
+    """Return a setting of the first copy, where a value has a row for each."""
+    rows = np.asarray(value)
+    return value if rows.dtype.kind not in "fiub" or rows.shape[:1] != (count,) else rows[0]
+
+
+def give_built_in(made: Assembled, settings: Mapping[str, Any]) -> dict[str, Any]:
     """Give a system what is built into its program, and return what its copies can each have.
 
     Raises InputError for what does not fit.
     """
     rest: dict[str, Any] = {}
-    for name, value in settings.items():
-        part, port = system.located(name, "set")[0]
-        scalars = port_scalars(part.instance.variables, port)
-        if scalars and _is_built_in(system, f"{part.name}.{scalars[0].name}", scalars[0]):
-            system.set(name, as_written(value), "set")
-        else:
-            rest[name] = value
+    for key, value in settings.items():
+        for name in made.named(key):
+            part, port = made.system.located(name, "set")[0]
+            scalars = port_scalars(part.instance.variables, port)
+            if scalars and _is_built_in(made.system, f"{part.name}.{scalars[0].name}", scalars[0]):
+                made.system.set(name, as_written(value), "set")
+            else:
+                rest[name] = value
     return rest
 
 
