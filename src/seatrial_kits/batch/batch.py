@@ -79,7 +79,7 @@ class Batch:
         made = assembled(
             rig, weather_keys, variant=variant, engine="native", step=step, choices=choices
         )
-        self._made, self.system = made, made.system
+        self.made, self.system = made, made.system
         try:
             self.seeds = self._seeds(made.system.seed if seed is None else seed)
             """Of each copy."""

@@ -14,6 +14,7 @@ from seatrial.api.written import as_written
 from seatrial.errors import InputError, unknown
 from seatrial.fmi.components.source import ComponentSource, find_source
 from seatrial.fmi.instance import Variable
+from seatrial.model.plant import Plant
 from seatrial.system.component_parameters import derived_seeds, seed_of
 from seatrial.system.part import Part
 from seatrial.system.system import System
@@ -22,6 +23,8 @@ from seatrial_kits.native.surroundings import Met, is_surrounded, surroundings_o
 from seatrial_kits.native.tables import WEATHER_ROLES, is_built_in
 
 Floats = NDArray[np.float64]
+_MOST_SEAS = 256
+"""That are kept for copies to come, whatever the number of copies: some hundred kB each."""
 
 
 class Settings:
@@ -205,6 +208,7 @@ class Settings:
                 for whole, rows in (self._seeded[1] | self._rows).items()
                 if whole.startswith(f"{name}.")
                 and whole.removeprefix(f"{name}.") in part.instance.variables
+                and _is_met(source, part.instance.variables[whole.removeprefix(f"{name}.")])
             }
             found[name] = [
                 self._meets(name, source, {**values, **{k: v[i] for k, v in changed.items()}})
@@ -217,7 +221,7 @@ class Settings:
     def _meets(self, name: str, source: ComponentSource, values: dict[str, Any]) -> Met | None:
         key = name, *sorted(values.items(), key=lambda item: item[0])
         if key not in self._met:
-            if len(self._met) > 4 * self._count:
+            if len(self._met) > max(_MOST_SEAS, 4 * self._count):
                 self._met.clear()  # those in use are kept by the copies
             self._met[key] = surroundings_of(source, values)
         return self._met[key]
@@ -304,6 +308,14 @@ def _is_built_in(system: System, whole: str, scalar: Variable) -> bool:
         return False
     cls = source.component_class()
     return is_built_in(cls, cls.scalar_by_name[scalar.name].port, surrounded=is_surrounded(source))
+
+
+def _is_met(source: ComponentSource, scalar: Variable) -> bool:
+    """Say if what surrounds a plant can depend on a value: not on inputs, nor where it starts."""
+    cls = source.component_class()
+    assert issubclass(cls, Plant)
+    starts = {f"{state.name}_start" for state in cls.state_ports}
+    return scalar.causality == "parameter" and scalar.name.partition(".")[0] not in starts
 
 
 def _folder(system: System, part: Part) -> Path:
