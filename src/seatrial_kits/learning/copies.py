@@ -155,7 +155,7 @@ class Copies:
     def _read(self) -> Record:
         values = self._batch.get(*self._names).reshape(self._count, -1) * self._scale + self._offset
         numbers = {name: values[:, column] for column, name in enumerate(self._names)}
-        time: Any = self._batch.time
+        time: Floats = self._batch.time
         return Record(time, numbers)
 
     def _remember(self, mask: Mask) -> None:
@@ -179,7 +179,7 @@ class Copies:
 
     def _of_episode(self, formula: Any, copy: int) -> float:
         rows = int(self._decided[copy]) + 1
-        time = np.arange(rows) * self._task.decision
+        time = np.arange(rows, dtype=np.float64) * np.float64(self._task.decision)
         record = Record(time, {n: values[:rows, copy] for n, values in self._history.items()})
         low, high = Evaluation(record).margins(formula)
         return float(low[0] if np.isfinite(low[0]) or not looks_ahead(formula) else high[0])

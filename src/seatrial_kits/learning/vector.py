@@ -83,7 +83,8 @@ class TaskVectorEnv(VectorEnv[Singles, Singles, NDArray[Any]]):
         self.single_action_space = Box(-1.0, 1.0, (len(file.act),), np.float32)
         self.observation_space = batch_space(self.single_observation_space, num_envs)
         self.action_space = batch_space(self.single_action_space, num_envs)
-        self._mode = mode
+        self.autoreset_mode = mode
+        """Gymnasium's, under the name that its own vector environments have."""
         self.randoms = [np.random.default_rng() for _ in range(num_envs)]
         """What each copy's episodes are drawn from."""
         self._ended: Mask = np.ones(num_envs, dtype=bool)
@@ -131,7 +132,7 @@ class TaskVectorEnv(VectorEnv[Singles, Singles, NDArray[Any]]):
                 f"shape {acting.shape}"
             )
         resting = self._ended.copy()
-        if resting.any() and self._mode is not AutoresetMode.NEXT_STEP:
+        if resting.any() and self.autoreset_mode is not AutoresetMode.NEXT_STEP:
             raise InputError(f"copies {np.flatnonzero(resting).tolist()} have ended: reset them")
         made = self._copies.act(np.clip(acting, -1.0, 1.0), ~resting)
         terminated, truncated = made.terminated & ~resting, made.truncated & ~resting
@@ -141,7 +142,7 @@ class TaskVectorEnv(VectorEnv[Singles, Singles, NDArray[Any]]):
         if resting.any():
             self._begin(resting)
         seen = self._copies.observation()
-        if self._mode is AutoresetMode.SAME_STEP and self._ended.any():
+        if self.autoreset_mode is AutoresetMode.SAME_STEP and self._ended.any():
             ended = self._ended
             infos["final_obs"] = np.array([None] * self.num_envs, dtype=object)
             for i in np.flatnonzero(ended).tolist():
