@@ -20,7 +20,8 @@ from seatrial.system.part import Part
 from seatrial.system.system import System
 from seatrial.system.values import check_limits, from_written, port_names, port_scalars
 from seatrial_kits.native.surroundings import Met, is_surrounded, surroundings_of
-from seatrial_kits.native.tables import WEATHER_ROLES, is_built_in
+from seatrial_kits.native.tables import WEATHER_ROLES
+from seatrial_kits.native.tables import is_built_in as built_in_port
 
 Floats = NDArray[np.float64]
 _MOST_SEAS = 256
@@ -276,13 +277,18 @@ def give_built_in(made: Assembled, settings: Mapping[str, Any]) -> dict[str, Any
     rest: dict[str, Any] = {}
     for key, value in settings.items():
         for name in made.named(key):
-            part, port = made.system.located(name, "set")[0]
-            scalars = port_scalars(part.instance.variables, port)
-            if scalars and _is_built_in(made.system, f"{part.name}.{scalars[0].name}", scalars[0]):
+            if is_built_in(made, name):
                 made.system.set(name, as_written(value), "set")
             else:
                 rest[name] = value
     return rest
+
+
+def is_built_in(made: Assembled, name: str) -> bool:
+    """Say if a port's value is part of the program. Raises InputError for a name that is none."""
+    part, port = made.system.located(name, "set")[0]
+    scalars = port_scalars(part.instance.variables, port)
+    return bool(scalars) and _is_built_in(made.system, f"{part.name}.{scalars[0].name}", scalars[0])
 
 
 def take_weather(system: System) -> dict[str, dict[str, str]]:
@@ -307,7 +313,9 @@ def _is_built_in(system: System, whole: str, scalar: Variable) -> bool:
     if not isinstance(source, ComponentSource):
         return False
     cls = source.component_class()
-    return is_built_in(cls, cls.scalar_by_name[scalar.name].port, surrounded=is_surrounded(source))
+    return built_in_port(
+        cls, cls.scalar_by_name[scalar.name].port, surrounded=is_surrounded(source)
+    )
 
 
 def _is_met(source: ComponentSource, scalar: Variable) -> bool:
