@@ -257,7 +257,12 @@ _DATA = {
             1.0,
             (
                 SID,
-                Field("date", "date", sense="UTC: `date` at the start of the run"),
+                Field(
+                    "date",
+                    "date",
+                    "bus_heading",
+                    "UTC: `date` at the start of the run; read: for the World Magnetic Model",
+                ),
                 Field("time", "date", sense="UTC, from midnight"),
                 Field("latitude", "position_n", "bus_position_n", "WGS 84, north"),
                 Field("longitude", "position_n", "bus_position_n", "WGS 84, east"),
