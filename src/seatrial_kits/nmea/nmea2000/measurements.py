@@ -10,7 +10,8 @@ from seatrial.links.geodesy import Origin
 from .codec import Fields, Message
 from .measured import ANGLE_DIGITS, TRUE, Measured, compass
 from .navigation_messages import NAVIGATION_MAKERS
-from .ports import ENGINES, Nmea2000Ports
+from ..received.outputs import ENGINES
+from .ports import Nmea2000Ports
 
 _MAGNETIC, _APPARENT = 1, 2
 _MODES = range(6)
