@@ -331,7 +331,6 @@ def test_a_node_reads_every_field_of_what_canboat_sends():
                 )
             else:
                 assert got == wanted, port
-        network.run(1.1)  # a true heading is no longer valid when a magnetic one follows
 
 
 def theirs(rng):

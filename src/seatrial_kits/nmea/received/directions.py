@@ -45,13 +45,11 @@ def true_direction(
     """Return a true direction of a quantity; None if none is valid.
 
     true = magnetic + variation. Of a true and a magnetic one the source with the higher priority
-    counts, without any the true one. A magnetic one with a variation in its own message has that.
+    counts, of two sources without any the true one, of one source the newest. A magnetic one with a variation in its own message has that.
     """
     true = received.valid(name, now_ns)
     reported = received.valid(f"magnetic_{name}", now_ns)
-    if true is not None and (
-        reported is None or received.rank(name) <= received.rank(f"magnetic_{name}")
-    ):
+    if true is not None and (reported is None or _first(received, name)):
         source, kind = received.origin(name)
         return Direction(true[0] % math.tau, f"{kind} from {source}")
     if reported is None:
@@ -63,6 +61,14 @@ def true_direction(
         return None
     value = (reported[0] + variation.value) % math.tau
     return Direction(value, f"magnetic {kind} from {source}, {variation.origin}")
+
+
+def _first(received: Received, name: str) -> bool:
+    """Return whether the true one of two valid directions counts before the magnetic one."""
+    magnetic = f"magnetic_{name}"
+    if received.origin(name) == received.origin(magnetic):
+        return received.since(name) >= received.since(magnetic)
+    return received.rank(name) <= received.rank(magnetic)
 
 
 def magnetic_direction(

@@ -131,6 +131,11 @@ class Received:
         known = self._memory[name]
         return known["source"], known["kind"]
 
+    def since(self, name: str) -> int:
+        """Return when a quantity was received last, ns."""
+        when: int = self._memory[name]["when"]
+        return when
+
     def rank(self, name: str) -> list[int]:
         """Return the priority of a quantity's source: the lower the better."""
         rank: list[int] = self._memory[name]["rank"]
