@@ -45,7 +45,8 @@ def true_direction(
     """Return a true direction of a quantity; None if none is valid.
 
     true = magnetic + variation. Of a true and a magnetic one the source with the higher priority
-    counts, of two sources without any the true one, of one source the newest. A magnetic one with a variation in its own message has that.
+    counts, of two sources without any the true one, of one source the newest. A magnetic one with
+    a variation in its own message has that.
     """
     true = received.valid(name, now_ns)
     reported = received.valid(f"magnetic_{name}", now_ns)

@@ -13,7 +13,7 @@ TARGETS = 8
 
 _NED = ("north", "east", "down")
 _EULER = ("phi", "theta", "psi")
-_ENGINES = tuple(f"e{number}" for number in range(1, ENGINES + 1))
+ENGINE_AXES = tuple(f"e{number}" for number in range(1, ENGINES + 1))
 _TARGETS = tuple(f"t{number}" for number in range(1, TARGETS + 1))
 
 SINGLE: dict[str, tuple[str, str]] = {
@@ -114,8 +114,8 @@ def received_outputs(prefix: str) -> Any:
         axes=("north", "east"))  # fmt: skip
     valid("true_wind", "the wind over ground")
     for name, (unit, text) in ENGINE.items():
-        add(f"engine_{name}", unit, text, axes=_ENGINES)
-        valid(f"engine_{name}", "each of them", axes=_ENGINES)
+        add(f"engine_{name}", unit, text, axes=ENGINE_AXES)
+        valid(f"engine_{name}", "each of them", axes=ENGINE_AXES)
     add("steering_mode", "1", "0 main steering, 1 non-follow-up, 2 follow-up, 3 heading alone, "
         "4 heading, 5 track; -1 for none", type=int, start=-1)  # fmt: skip
     add("rudder_direction", "1", "way the rudder is to move: 1 starboard, -1 port", type=int)

@@ -235,7 +235,7 @@ def test_rates_do_not_depend_on_the_step():
 @pytest.mark.parametrize(
     ("values", "expected"),
     [
-        ({"sentences": "GPRMV 1"}, "unknown sentence 'RMV'; did you mean 'RMC'"),
+        ({"sentences": "GPRMV 1"}, "unknown sentence 'RMV'; did you mean 'RPM' or 'RMC'"),
         ({"sentences": "GPMWV 1"}, "did you mean 'MWV-T' or 'MWV-R'"),
         ({"sentences": "GPRMC"}, "'GPRMC' is not TALKER+SENTENCE PERIOD"),
         ({"sentences": "gprmc 1"}, "'gprmc 1' is not TALKER+SENTENCE PERIOD"),

@@ -61,7 +61,8 @@ def test_a_compass_without_variation_has_that_of_another_node():
 
 def test_the_rest_of_that_log_has_an_attitude_without_yaw_and_a_compass_with_variation():
     node = played("magnetic_heading.log", 12.0)
-    assert node.get("bus_roll_valid") and node.get("bus_pitch_valid")
+    assert node.get("bus_roll_valid")
+    assert node.get("bus_pitch_valid")
     assert not node.get("bus_yaw_valid")
     assert node.get("bus_attitude")[:2] == pytest.approx([-0.02, 0.01], abs=1e-9)
     node = played("magnetic_heading.log", 20.0)
