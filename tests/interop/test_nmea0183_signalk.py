@@ -67,6 +67,7 @@ def test_signal_k_agrees():
         ("SDDPT", "environment.depth.belowTransducer", 12.34, 1e-9),
         ("YXMTW", "environment.water.temperature", 295.65, 1e-9),
         ("AGRSA", "steering.rudderAngle", -7.5 * DEG, half_degree_digit),
+        ("HCHDM", "navigation.headingMagnetic", 13.0 * DEG, half_degree_digit),
     ):
         assert found[name][path] == pytest.approx(value, abs=within), (name, path)
 

@@ -246,10 +246,12 @@ def _vlw(of: Readings) -> Fields:
     }
 
 
-def _vdr(of: Readings) -> Fields:
-    """Return set and drift: velocity over ground less that through the water along the bow."""
-    direction, speed = (None, None) if of.current is None else of.current
-    return {
+def _vdr(of: Readings) -> list[Fields]:
+    """Return set and drift, over ground less through the water along the bow; none without them."""
+    if of.current is None:
+        return []
+    direction, speed = of.current
+    fields = {
         "dirT": bearing(direction),
         "dirTu": "T",
         "dirM": bearing(of.magnetic(direction)),
@@ -257,6 +259,7 @@ def _vdr(of: Readings) -> Fields:
         "spd": number(speed, 2, KNOT),
         "spdu": "N",
     }
+    return [fields]
 
 
 def _rpm(of: Readings) -> list[Fields]:
@@ -339,7 +342,6 @@ _ALONE: dict[str, Callable[[Readings], Fields]] = {
     "GNS": _gns,
     "HDM": _hdm,
     "MWD": _mwd,
-    "VDR": _vdr,
     "VLW": _vlw,
     **ROUTE,
 }
@@ -348,6 +350,7 @@ SENTENCES: dict[str, Callable[[Readings], list[Fields]]] = {
     **{name: _alone(made) for name, made in _ALONE.items()},
     "GSV": _gsv,
     "RPM": _rpm,
+    "VDR": _vdr,
     **ROUTE_LEG,
 }
 """What can be sent, by formatter, and how; of wind the apparent one, R, and the true one, T."""
