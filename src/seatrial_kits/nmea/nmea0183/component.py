@@ -288,13 +288,13 @@ class Nmea0183(Nmea0183Ports):
         found = Assembly(self._ais_parts).take(line)
         if found is None or found[1]:
             return
-        heard = ais_report(found[0])
-        self._count(line[3:6].decode("latin-1"), heard is not None)
-        if heard is not None:
+        station = ais_report(found[0])
+        self._count(line[3:6].decode("latin-1"), station is not None)
+        if station is not None:
             there = None
-            if "latitude" in heard:
-                there = position(self._origin, heard["latitude"], heard["longitude"], 0.0)
-            self._targets.take(now_ns, heard, there)
+            if "latitude" in station:
+                there = position(self._origin, station["latitude"], station["longitude"], 0.0)
+            self._targets.take(now_ns, station, there)
             self._news.append("ais")
 
     def _count(self, kind: str, used: bool) -> None:

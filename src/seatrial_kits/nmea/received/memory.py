@@ -115,14 +115,14 @@ class Received:
         return list(self._memory)
 
     def get(self, name: str, now_ns: int) -> tuple[list[float] | None, bool]:
-        """Return the last values of a quantity, None if there were none, and whether they count."""
+        """Return the last values of a quantity, None if there were none, and whether they are valid."""
         known = self._memory.get(name)
         if known is None:
             return None, False
         return known["values"], self._valid(known, now_ns)
 
     def valid(self, name: str, now_ns: int) -> list[float] | None:
-        """Return the values of a quantity, None if they do not count."""
+        """Return the values of a quantity, None if they are not valid."""
         values, valid = self.get(name, now_ns)
         return values if valid else None
 

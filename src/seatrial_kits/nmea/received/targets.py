@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 LIFE_NS = 420_000_000_000
-"""Time for which a station counts after its last report: 7 min."""
+"""Time for which a station is shown after its last report: 7 min."""
 _MOST = 2000
 """Stations that are kept at most: the ones received last."""
 
@@ -59,6 +59,6 @@ class Targets:
         return sorted(self.lately(now_ns).items(), key=distance)[:most]
 
     def expires(self, now_ns: int) -> int:
-        """Return when the next station no longer counts, ns; far ahead if none does."""
+        """Return when the next report expires, ns; far ahead if none does."""
         ends = (entry["when"] + LIFE_NS + 1 for entry in self.lately(now_ns).values())
         return min(ends, default=1 << 62)
