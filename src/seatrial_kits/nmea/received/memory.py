@@ -115,7 +115,7 @@ class Received:
         return list(self._memory)
 
     def get(self, name: str, now_ns: int) -> tuple[list[float] | None, bool]:
-        """Return the last values of a quantity, None if there were none, and whether they are valid."""
+        """Return the last values of a quantity, None without any, and whether they are valid."""
         known = self._memory.get(name)
         if known is None:
             return None, False
