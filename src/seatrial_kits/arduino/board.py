@@ -18,10 +18,13 @@ from pathlib import Path
 
 from seatrial.errors import SimulationError
 
+from .resources import laid_out
+from .toolchain import arduino_core
+
 _EVENT = struct.Struct("<BBHQ")
 _INPUT = struct.Struct("<BBHd")
 _HEAD = struct.Struct("<IQI")
-_ADDRESS = re.compile(r" \[at (0x[0-9a-f]+)\]")
+_ADDRESSES = re.compile(r" \[at((?: 0x[0-9a-f]+)*)\]")
 UART, EDGE, DUTY, WIDTH, EEPROM, RESET = (ord(letter) for letter in "TPDHeR")
 """Kinds of events: a byte has left a UART; a pin has another level, is modulated with a share, high
 for so long; a byte of the EEPROM has changed; the board has started again."""
@@ -140,14 +143,21 @@ class Board:
         return f"ended by signal {-code}" if code is not None and code < 0 else f"ended ({code})"
 
     def _placed(self, output: str) -> str:
-        """Return a message with the line of the sketch in the place of an address."""
-        match = _ADDRESS.search(output)
+        """Return a message with a line in the place of addresses: the first that is a sketch's.
+
+        Without one, it is the first of the board's own.
+        """
+        match = _ADDRESSES.search(output)
         if match is None:
             return output
         tool = "avr-addr2line" if self._source.suffix == ".elf" else "addr2line"
-        command = [tool, "-e", str(self._source), match[1]]
+        command = [tool, "-e", str(self._source), *match[1].split()]
         with contextlib.suppress(OSError):
             found = subprocess.run(command, capture_output=True, text=True, check=False)
-            if (line := found.stdout.strip().split(" (")[0]) and not line.startswith("?"):
-                return output.replace(match[0], f" ({line})")
-        return output
+            lines = [each.split(" (")[0] for each in found.stdout.splitlines()]
+            known = [each for each in lines if not each.startswith("?") and ":?" not in each]
+            boards = (f"{arduino_core()}/", f"{laid_out()}/", "/build/", "/usr/")
+            theirs = [each for each in known if not each.startswith(boards)]
+            if place := [*theirs, *known][:1]:
+                return output.replace(match[0], f" ({place[0]})")
+        return output.replace(match[0], "")

@@ -19,15 +19,16 @@ from .component import Arduino
 from .dialect import LIMITS
 from .emulator import build_emulator, build_firmware
 from .libraries import read_source
-from .mcus import MCUS
+from .mcus import MCUS, Mcu
 from .sketch import Sketch, find_sketch
-from .unsupported import unsupported
-from .wiring import PARTS, read_uarts, read_wires
+from .target_board import target_text
+from .wiring import PARTS, Wire, read_uarts, read_wires
 
 sketch_app = typer.Typer(no_args_is_help=True, pretty_exceptions_enable=False)
 
 _STEP = 0.02
 _SOFT_SERIAL = re.compile(r"\bSoftwareSerial\s+\w+\s*[({]\s*(\d+)\s*,\s*(\d+)")
+_SOFT = ("soft_rx", "soft_tx")
 _SERIAL = re.compile(r"\bSerial([123]?)\s*\.\s*begin\s*\(\s*(\d*)")
 _FOLDER = Annotated[str, typer.Argument(metavar="SKETCH", help="A sketch's folder or .ino.")]
 _BACKEND = Annotated[str, typer.Option(help="'host' or 'simavr'.")]
@@ -84,15 +85,20 @@ def check(
     for wire in read_wires(values.get("wires", ""), board):
         place = f"0x{wire.place:02x}" if wire.kind in PARTS else f"pin {wire.place}"
         print(printable(f"  {place}: {wire.kind} {wire.number or ''}".rstrip()))
-    problems = _lines(found, values)
+    if target := target_text(found):
+        print(printable(f"  {target}"))
     if _checked_backend(backend) == "host":
         print("what the back end 'host' does not show:")
         for limit in LIMITS:
             print(printable(f"  {limit}"))
-        problems = [*unsupported(found), *problems]
+    problems = _lines(found, values)
+    try:
+        _built(found, board, backend)
+    except InputError as error:
+        problems.insert(0, str(error))
     if problems:
         raise InputError("\n".join(problems))
-    print("nothing is unsupported")
+    print(f"it builds for the back end {backend!r}: nothing is unsupported")
 
 
 @sketch_app.command()
@@ -108,11 +114,7 @@ def build(
     values = _values(profile, mcu=mcu, libraries=libraries, flags=flags)
     board = MCUS[values["mcu"]]
     found = _found(sketch, values)
-    if _checked_backend(backend) == "host":
-        print(build_host(found, board))
-    else:
-        build_emulator(board)
-        print(build_firmware(found, board))
+    print(_built(found, board, _checked_backend(backend)))
 
 
 @sketch_app.command()
@@ -152,6 +154,14 @@ def run(
         print("ended")
     finally:
         board.close()
+
+
+def _built(sketch: Sketch, board: Mcu, backend: str) -> Path:
+    """Return a sketch's program or firmware, built."""
+    if backend == "host":
+        return build_host(sketch, board)
+    build_emulator(board)
+    return build_firmware(sketch, board)
 
 
 def _opened(sketch: Sketch) -> str:
@@ -194,7 +204,6 @@ def _values(profile: str, **given: str) -> dict[str, Any]:
 def _lines(sketch: Sketch, values: dict[str, Any]) -> list[str]:
     """Return the lines that the sketch opens and the board or the profile has not."""
     wires = read_wires(values.get("wires", ""), MCUS[values["mcu"]])
-    pins = {wire.place for wire in wires if wire.kind in ("soft_rx", "soft_tx")}
     problems = []
     for file in sketch.tabs:
         for number, line in enumerate(read_source(file).splitlines(), 1):
@@ -203,11 +212,24 @@ def _lines(sketch: Sketch, values: dict[str, Any]) -> list[str]:
                 problems += [f"{place}: {each}" for each in _no_uart(int(match[1] or 0), values)]
             for match in _SOFT_SERIAL.finditer(code) if "uarts" in values else ():
                 rx, tx = int(match[1]), int(match[2])
-                if not pins & {rx, tx}:
-                    problems.append(
-                        f"{place}: the profile has no line at pins {rx} and {tx}: "
-                        f"wires of '{rx} soft_rx 1; {tx} soft_tx 1' bring that of UART 1 there"
-                    )
+                problems += [f"{place}: {each}" for each in _no_pins(rx, tx, wires)]
+    return problems
+
+
+def _no_pins(rx: int, tx: int, wires: list[Wire]) -> list[str]:
+    """Return which pins of a UART in software have no line of a profile."""
+    lines = {wire.kind: wire for wire in wires if wire.place in (rx, tx)}
+    if not any(kind in lines for kind in _SOFT):
+        return [
+            f"the profile has no line at pins {rx} and {tx}: "
+            f"wires of '{rx} soft_rx 1; {tx} soft_tx 1' bring that of UART 1 there"
+        ]
+    problems = []
+    for kind, pin, does in (("soft_rx", rx, "reads"), ("soft_tx", tx, "writes")):
+        at = [wire.place for wire in wires if wire.kind == kind]
+        if at and pin not in at:
+            there = " and ".join(map(str, at))
+            problems.append(f"it {does} at pin {pin}, and {kind} of the profile is at pin {there}")
     return problems
 
 

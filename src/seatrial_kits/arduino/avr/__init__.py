@@ -10,5 +10,7 @@ DATA_FILES = (
     "lines.h",
     "memory.h",
     "modulation.h",
+    "pins.c",
+    "stack.h",
     "ticks.h",
 )

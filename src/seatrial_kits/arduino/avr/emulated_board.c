@@ -44,6 +44,8 @@ static void end(const char *why)
     _exit(0);
 }
 
+#include "stack.h"
+
 /* ------------------------------------------------------------------ pins */
 
 static avr_irq_t *pin_irq(uint8_t pin)
@@ -141,12 +143,12 @@ static void crashed(void)
     unsigned address;
     const char *at = strstr(trouble, "Address ");
     if (at && sscanf(at, "Address %x", &address) == 1)
-        snprintf(text, sizeof text, "it %s address 0x%04x, beyond the memory [at 0x%x]",
-                 strstr(trouble, "write") ? "writes to" : "reads from", address, avr->pc);
+        snprintf(text, sizeof text, "it %s address 0x%04x, beyond the memory",
+                 strstr(trouble, "write") ? "writes to" : "reads from", address);
     else
         snprintf(text, sizeof text, "the microcontroller crashed: an instruction that is none, or the stack ran into "
-                 "the data [at 0x%x]", avr->pc);
-    end(text);
+                 "the data");
+    end_here(text);
 }
 
 static void was_reset(avr_t *of)
@@ -180,6 +182,7 @@ static int load(const char *file, const char *mcu)
     avr_load_firmware(avr, &firmware);
     avr->frequency = (uint32_t)CLOCK;
     avr_register_io_write(avr, CLKPR, clock_written, 0);
+    avr_register_io_write(avr, NO_PIN, no_pin, 0);
     return 1;
 }
 

@@ -104,6 +104,8 @@ int16_t digitalRead(uint8_t pin);
 int16_t analogRead(uint8_t pin);
 void analogWrite(uint8_t pin, int value);
 void analogReference(uint8_t mode);
+void tone(uint8_t pin, unsigned frequency, uint32_t duration = 0);
+void noTone(uint8_t pin);
 uint32_t pulseIn(uint8_t pin, uint8_t level, uint32_t timeout = 1000000);
 uint32_t pulseInLong(uint8_t pin, uint8_t level, uint32_t timeout = 1000000);
 void shiftOut(uint8_t data, uint8_t clock, uint8_t order, uint8_t value);

@@ -32,6 +32,8 @@ public:
     void end() {}
     void beginTransaction(SPISettings settings) { clock_ = settings.clock; }
     void endTransaction() {}
+    void usingInterrupt(uint8_t) {}
+    void notUsingInterrupt(uint8_t) {}
     void setClockDivider(uint8_t divider) { clock_ = F_CPU / divider; }
     void setBitOrder(uint8_t) {}
     void setDataMode(uint8_t) {}

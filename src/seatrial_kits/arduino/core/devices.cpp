@@ -36,10 +36,12 @@ SoftwareSerial *SoftwareSerial::listener_;
 void SoftwareSerial::begin(long baud)
 {
     charge(400);
-    line_ = machine::line_at(rx_, tx_);
+    to_ = machine::line_to(rx_);
+    from_ = machine::line_from(tx_);
     byte_us_ = baud > 0 ? (uint32_t)(10000000 / baud) : 0;
-    if (line_ >= 0)
-        machine::open_uart((uint8_t)line_, (uint32_t)baud);
+    for (int each : {to_, from_ == to_ ? -1 : from_})
+        if (each >= 0)
+            machine::open_uart((uint8_t)each, (uint32_t)baud);
     listen();
 }
 
@@ -50,8 +52,7 @@ bool SoftwareSerial::listen()
     if (listener_)
         listener_->stopListening();
     listener_ = this;
-    if (line_ >= 0)
-        machine::listen((uint8_t)line_, true);
+    hear(true);
     return true;
 }
 
@@ -60,15 +61,15 @@ bool SoftwareSerial::stopListening()
     if (listener_ != this)
         return false;
     listener_ = nullptr;
-    if (line_ >= 0)
-        machine::listen((uint8_t)line_, false);
+    hear(false);
     return true;
 }
 
-bool SoftwareSerial::overflow() { return line_ >= 0 && machine::overflowed((uint8_t)line_); }
-int16_t SoftwareSerial::available() { charge(24); return isListening() && line_ >= 0 ? (int16_t)machine::received((uint8_t)line_) : (int16_t)0; }
-int16_t SoftwareSerial::read() { charge(30); return isListening() && line_ >= 0 ? (int16_t)machine::take((uint8_t)line_, false) : (int16_t)-1; }
-int16_t SoftwareSerial::peek() { charge(24); return isListening() && line_ >= 0 ? (int16_t)machine::take((uint8_t)line_, true) : (int16_t)-1; }
+void SoftwareSerial::hear(bool on) { if (to_ >= 0) machine::listen((uint8_t)to_, on); }
+bool SoftwareSerial::overflow() { return to_ >= 0 && machine::overflowed((uint8_t)to_); }
+int16_t SoftwareSerial::available() { charge(24); return isListening() && to_ >= 0 ? (int16_t)machine::received((uint8_t)to_) : (int16_t)0; }
+int16_t SoftwareSerial::read() { charge(30); return isListening() && to_ >= 0 ? (int16_t)machine::take((uint8_t)to_, false) : (int16_t)-1; }
+int16_t SoftwareSerial::peek() { charge(24); return isListening() && to_ >= 0 ? (int16_t)machine::take((uint8_t)to_, true) : (int16_t)-1; }
 
 /* Bit by bit, with interrupts off: what comes meanwhile is not received. */
 size_t SoftwareSerial::write(uint8_t data)
@@ -77,14 +78,14 @@ size_t SoftwareSerial::write(uint8_t data)
         return 0;
     bool was = interrupts_enabled();
     noInterrupts();
-    if (line_ >= 0) {
-        machine::listen((uint8_t)line_, false);
-        machine::send((uint8_t)line_, data);
-        machine::drain((uint8_t)line_);
-        machine::listen((uint8_t)line_, isListening());
+    hear(false);
+    if (from_ >= 0) {
+        machine::send((uint8_t)from_, data);
+        machine::drain((uint8_t)from_);
     } else {
         delayMicroseconds(byte_us_);
     }
+    hear(isListening());
     if (was)
         interrupts();
     return 1;

@@ -11,6 +11,12 @@ struct Pin {
 } pins[PINS];
 int modulated;
 
+void need_pin(uint8_t pin)
+{
+    if (pin >= BOARD_PINS)
+        end("it uses pin %d: the %s has 0 to %d", pin, BOARD, BOARD_PINS - 1);
+}
+
 void show(uint8_t pin)
 {
     if (pins[pin].watched)
