@@ -144,7 +144,7 @@ def test_what_cannot_be_is_refused_with_its_line(tmp_path, source, expected):
         ),
         (
             "volatile byte *nowhere = 0;\nvoid setup() {}\nvoid loop() {\n  delay(50);\n  *nowhere = 1;\n}\n",
-            r"crashed: Segmentation fault \(.*one\.ino:5\)",
+            r"crashed: Segmentation fault at address 0x0 \(.*one\.ino:5\)",
         ),
         (
             "void setup() { Serial.begin(9600); }\nvoid loop() {}\n",

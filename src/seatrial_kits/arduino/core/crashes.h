@@ -35,7 +35,9 @@ void crashed(int number, siginfo_t *info, void *context)
         reset(); /* a jump to the beginning of the program */
     greg_t place = ((ucontext_t *)context)->uc_mcontext.gregs[REG_RIP];
     char text[160];
-    snprintf(text, sizeof text, "it crashed: %s at address %p", strsignal(number), (void *)at);
+    int length = snprintf(text, sizeof text, "it crashed: %s", strsignal(number));
+    if (number == SIGSEGV)
+        snprintf(text + length, sizeof text - length, " at address 0x%llx", (unsigned long long)at);
     end_at((void *)place, text);
 }
 

@@ -192,11 +192,23 @@ void Servo::writeMicroseconds(int us)
 
 EEPROMClass EEPROM;
 
-static uint8_t memory_read(uintptr_t at) { charge(12); return at < EEPROM_SIZE ? machine::remembered((uint16_t)at) : 0xFF; }
+/* A write goes on for 3.4 ms by itself; whatever comes next waits for it. */
+static uint64_t memory_ready;
+
+bool eeprom_ready() { charge(2); return machine::now >= memory_ready; }
+
+static uint8_t memory_read(uintptr_t at)
+{
+    machine::pass_until(memory_ready);
+    charge(12);
+    return at < EEPROM_SIZE ? machine::remembered((uint16_t)at) : 0xFF;
+}
 
 static void memory_write(uintptr_t at, uint8_t value)
 {
-    machine::pass_until(machine::now + 54400);
+    machine::pass_until(memory_ready);
+    charge(20);
+    memory_ready = machine::now + 54400;
     if (at < EEPROM_SIZE)
         machine::remember((uint16_t)at, value);
 }
