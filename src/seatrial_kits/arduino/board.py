@@ -13,6 +13,7 @@ import select
 import struct
 import subprocess
 import time
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -32,6 +33,9 @@ for so long; a byte of the EEPROM has changed; the board has started again."""
 _ANSWER_S = 20.0
 """Wall clock: a program that takes this long for one step hangs where it cannot report it."""
 
+_CALL = 0xFFFFFFFF
+"""In the place of a size: a part is called."""
+
 Event = tuple[int, int, int, int]
 """Kind, index, value, cycle."""
 
@@ -47,13 +51,23 @@ class Inputs:
         self.data += _INPUT.pack(ord(kind), index, value, number)
 
 
+Answer = Callable[[int, int, int, int, bytes], "tuple[int, Inputs]"]
+"""What answers a call of a part: call, part, value, cycle, and bytes that were sent to it."""
+
+
 class Board:
     """A running ``program``, ``name`` in messages; ``source`` has the lines of addresses."""
 
     def __init__(
-        self, name: str, program: Path, *arguments: str, source: Path | None = None
+        self,
+        name: str,
+        program: Path,
+        *arguments: str,
+        source: Path | None = None,
+        answer: Answer | None = None,
     ) -> None:
         self.name, self._source = name, source or program
+        self._answer = answer
         theirs_in, self._requests = os.pipe()
         self._answers, theirs_out = os.pipe()
         try:
@@ -86,7 +100,8 @@ class Board:
             # A program that could not begin has reported why and is gone before the request.
             with contextlib.suppress(BrokenPipeError):
                 self._write(request)
-            size = int.from_bytes(self._read(4), "little")
+            while (size := int.from_bytes(self._read(4), "little")) == _CALL:
+                self._answer_call()
             answer = self._read(size)
         except (OSError, EOFError):
             raise SimulationError(f"{self.name}: its program {self._ended()}") from None
@@ -111,6 +126,15 @@ class Board:
         self._process.wait()
 
     # ------------------------------------------------------------------ inside
+
+    def _answer_call(self) -> None:
+        """Let a part answer what the board has called it for."""
+        call, index, value, cycle = _EVENT.unpack(self._read(_EVENT.size))
+        sent = self._read(int.from_bytes(self._read(4), "little"))
+        result, inputs = (
+            self._answer(call, index, value, cycle, sent) if self._answer else (0, Inputs())
+        )
+        self._write(struct.pack("<IQ", 8 + len(inputs.data), result) + inputs.data)
 
     def _write(self, data: bytes) -> None:
         view = memoryview(data)

@@ -22,7 +22,7 @@ from .libraries import read_source
 from .mcus import MCUS, Mcu
 from .sketch import Sketch, find_sketch
 from .target_board import target_text
-from .wiring import PARTS, Wire, read_uarts, read_wires
+from .wiring import Wire, read_uarts, read_wires
 
 sketch_app = typer.Typer(no_args_is_help=True, pretty_exceptions_enable=False)
 
@@ -83,8 +83,7 @@ def check(
         for file in files:
             print(printable(f"  {kind} {file}"))
     for wire in read_wires(values.get("wires", ""), board):
-        place = f"0x{wire.place:02x}" if wire.kind in PARTS else f"pin {wire.place}"
-        print(printable(f"  {place}: {wire.kind} {wire.number or ''}".rstrip()))
+        print(printable(f"  {wire}"))
     if target := target_text(found):
         print(printable(f"  {target}"))
     if _checked_backend(backend) == "host":

@@ -125,7 +125,9 @@ def _pins(draw: Random) -> str:
 
 
 def _timers(draw: Random) -> str:
-    wait = draw.choice((f"delay({draw.randint(1, 20)})", f"delayMicroseconds({draw.randint(100, 9999)})"))
+    wait = draw.choice(
+        (f"delay({draw.randint(1, 20)})", f"delayMicroseconds({draw.randint(100, 9999)})")
+    )
     return _block(
         "  unsigned long at = micros(), since = millis();",
         f"  {wait};",
@@ -136,7 +138,9 @@ def _timers(draw: Random) -> str:
 
 
 def _sound(draw: Random) -> str:
-    lines = [f"  tone(25, {draw.randint(100, 3000)}, {draw.randint(2, 15)}); delay({draw.randint(3, 12)});"]
+    lines = [
+        f"  tone(25, {draw.randint(100, 3000)}, {draw.randint(2, 15)}); delay({draw.randint(3, 12)});"
+    ]
     if draw.random() < 0.5:
         lines.append(f"  noTone(25); say(digitalRead(25)); delay({draw.randint(1, 5)});")
     return _block(*lines, "  noTone(25);")

@@ -135,7 +135,7 @@ def test_a_pin_that_is_none_ends_it_with_the_pin_and_the_line(tmp_path, backend,
 @pytest.mark.parametrize("nowhere", ["0", "0x7fff1234"])
 def test_an_access_to_nowhere_ends_it_with_the_line_of_the_sketch(tmp_path, use, nowhere):
     source = (
-        f"volatile uintptr_t nowhere = {nowhere};\nchar text[4] = \"abc\";\n"
+        f'volatile uintptr_t nowhere = {nowhere};\nchar text[4] = "abc";\n'
         f"volatile long kept;\nvoid use() {{\n  {use};\n}}\n"
         "void setup() {}\nvoid loop() { delay(5); use(); }\n"
     )

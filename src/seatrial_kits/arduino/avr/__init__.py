@@ -11,6 +11,7 @@ DATA_FILES = (
     "memory.h",
     "modulation.h",
     "pins.c",
+    "spi.h",
     "stack.h",
     "ticks.h",
 )

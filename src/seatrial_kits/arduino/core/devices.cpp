@@ -12,6 +12,7 @@
 extern "C" int part_link_begin(uint8_t address, int reading);
 extern "C" int part_link_write(uint8_t data);
 extern "C" uint8_t part_link_read();
+extern "C" uint8_t part_link_transfer(uint8_t data);
 
 using machine::charge;
 
@@ -115,7 +116,8 @@ uint8_t TwoWire::endTransmission(bool)
         return 2;
     for (uint8_t i = 0; i < written_; i++) {
         pass(1);
-        part_link_write(out_[i]);
+        if (!part_link_write(out_[i]))
+            return 3;
     }
     return 0;
 }
@@ -134,7 +136,12 @@ uint8_t TwoWire::requestFrom(uint8_t address, uint8_t count, uint8_t)
 }
 
 SPIClass SPI;
-uint8_t SPIClass::transfer(uint8_t) { charge((uint32_t)(8.0 * machine::CLOCK / clock_) + 4); return 0xFF; }
+uint8_t SPIClass::transfer(uint8_t data)
+{
+    uint8_t received = part_link_transfer(data);
+    charge((uint32_t)(8.0 * machine::CLOCK / clock_) + 4);
+    return received;
+}
 
 /* What the core does after each loop(). */
 void serve_serial_events()

@@ -12,6 +12,7 @@
 #include <initializer_list>
 
 #include "link.h"
+#include "drives.h"
 #include "parts.h"
 #include "waves.h"
 
@@ -94,8 +95,11 @@ void take_input(const link_input *input)
     case IN_LEVEL: put_outside(index % PINS, input->number != 0.0); break;
     case IN_FREQUENCY: wave_set(index, 0, input->number, now); break;
     case IN_PULSE: wave_set(index, 1, input->number, now); break;
-    case IN_QUANTITY: part_quantities[index % QUANTITIES] = input->number; break;
-    case IN_PART: part_add((uint8_t)input->value, index); break;
+    case IN_PART: part_add(input); watch_part(index); break;
+    case IN_REGISTER: part_set(input); break;
+    case IN_REPLY: part_clear(input); break;
+    case IN_DRIVE: drive_add(index % PINS, (uint8_t)input->value, (uint64_t)input->number); break;
+    case IN_FORGET: drive_forget(index % PINS); break;
     case IN_WATCH: pins[index % PINS].watched = true; break;
     }
 }
@@ -133,6 +137,7 @@ uint64_t first(bool do_it)
     all = wave_due < all ? wave_due : all;
     all = servo_next < all ? servo_next : all;
     all = tone_next < all ? tone_next : all;
+    all = drive_next() < all ? drive_next() : all;
     all = watchdog_due < all ? watchdog_due : all;
     all = target < all ? target : all;
     if (!do_it)
@@ -150,12 +155,15 @@ uint64_t first(bool do_it)
         turn_servos();
     } else if (all == tone_next) {
         turn_tone();
+    } else if (all == drive_next()) {
+        drive_at one = drive_take();
+        put_outside(one.pin, one.level == DRIVE_NONE ? -1 : one.level);
     } else if (all == watchdog_due) {
         reset();
     } else {
         refuse_other_rates();
         link_answer(now, "");
-        target = link_await(take_input);
+        target = link_read();
     }
     now = late > now ? late : now;
     return all;
@@ -202,7 +210,7 @@ void *run(void *)
 {
     catch_crashes();
     if (!resumed)
-        target = link_await(take_input);
+        target = link_read();
     next_due = first(false);
     setup();
     for (;;) {
@@ -246,14 +254,14 @@ void drive(uint8_t pin, bool to)
         modulated--;
     pins[pin].share = -1;
     pins[pin].latch = to;
-    settle(pin);
+    settle_own(pin);
 }
 
 void direct(uint8_t pin, bool output)
 {
     need_pin(pin);
     pins[pin].output = output;
-    settle(pin);
+    settle_own(pin);
 }
 
 bool level(uint8_t pin)
@@ -375,6 +383,7 @@ int main(int, char **arguments)
 {
     using namespace machine;
     link_out = atoi(arguments[1]);
+    link_take = take_input;
     patience = (uint64_t)(atof(arguments[2]) * CLOCK);
     memset(memory, 0xFF, sizeof memory);
     program = arguments;
@@ -399,3 +408,14 @@ int main(int, char **arguments)
 extern "C" int part_link_begin(uint8_t address, int reading) { return part_begin(address, reading); }
 extern "C" int part_link_write(uint8_t data) { return part_write(data); }
 extern "C" uint8_t part_link_read() { return part_read(); }
+extern "C" uint8_t part_link_transfer(uint8_t data) { return part_transfer(data); }
+
+static uint64_t part_call(uint8_t call, part *one, uint16_t value)
+{
+    link_event event = {call, (uint8_t)(one - parts), value, machine::now};
+    uint32_t count = one->sent_length;
+    one->sent_length = 0;
+    uint64_t result = link_call(event, one->sent, count);
+    machine::reschedule(); /* it may have said what it drives, and when */
+    return result;
+}

@@ -3,7 +3,7 @@
 #define PINS_H
 
 struct Pin {
-    bool level = false, watched = false;
+    bool level = false, watched = false, part = false; /* a part follows the sketch's levels there */
     bool output = false, latch = false; /* DDR and PORT: of an input, whether it is pulled up */
     int outside = -1;                   /* level that is driven from outside; -1: nothing is there */
     int share = -1;                     /* of 255; -1: no PWM */
@@ -43,6 +43,21 @@ void settle(uint8_t pin)
     put_level(pin, one.output || one.outside < 0 ? one.latch : one.outside > 0);
 }
 
+/* By the sketch's doing. */
+void settle_own(uint8_t pin)
+{
+    bool before = pins[pin].level;
+    settle(pin);
+    if (pins[pin].part && pins[pin].level != before)
+        part_edge(pin, pins[pin].level);
+}
+
+void watch_part(uint8_t place)
+{
+    if (place < PINS && part_is_at(place))
+        pins[place].part = true;
+}
+
 void put_output(uint8_t pin, bool to)
 {
     pins[pin].output = true;
@@ -50,7 +65,8 @@ void put_output(uint8_t pin, bool to)
     settle(pin);
 }
 
-void put_outside(uint8_t pin, bool to)
+/* A level is 0, 1, or below 0: nothing drives it. */
+void put_outside(uint8_t pin, int to)
 {
     pins[pin].outside = to;
     settle(pin);

@@ -1,0 +1,332 @@
+"""Parts at a board's buses and pins: what a file of one declares and does, for every back end.
+
+A part is a class of one of the kinds here. Its registers are data; `Part.measure` fills them from the
+ports that it names, at the beginning of each step in which these have changed. The board reads and
+writes registers by itself: the class is called for those only that are declared so.
+"""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+from seatrial.errors import SimulationError
+
+from .board import Inputs
+from .mcus import CLOCK
+
+_REGISTERS, _STREAM, _SPI, _PIN = 1, 2, 3, 4
+_STORE, _NEXT, _ACCESS, _REPLY = 0, 1, 2, 3
+_BEGINS = 0x100
+_READ_ONLY, _WRITE_CALLS, _READ_CALLS = 1, 2, 4
+BEGIN, WRITE, READ, TRANSFER, SELECT, EDGE = b"bwrxse"
+"""Calls of a board: see ``shared/parts.h``."""
+NONE = 2
+"""A level that is none: a part leaves a pin alone, and what pulls it has it."""
+
+
+def part_failed(board: str, part: Part, error: Exception) -> SimulationError:
+    """Return an error of a part's class, with the line of its file."""
+    trace = error.__traceback__
+    line = 0
+    file = inspect.getfile(type(part))
+    while trace is not None:
+        if trace.tb_frame.f_code.co_filename == file:
+            line = trace.tb_lineno
+        trace = trace.tb_next
+    return SimulationError(
+        f"{board}: the part {type(part).__name__} has failed ({file}:{line}): "
+        f"{type(error).__name__}: {error}"
+    )
+
+
+@dataclass(frozen=True)
+class Register:
+    """A register at ``at`` with its value at power-on.
+
+    ``form`` is its format: ``u8 s16be u16le`` and so on, of one byte and more. ``access`` is
+    ``rw``, ``r`` (writing does nothing), ``acts`` (`I2CRegisters.written` follows a write) or
+    ``latches`` (`I2CRegisters.reading` precedes a read).
+    """
+
+    at: int
+    value: int = 0
+    form: str = "u8"
+    access: str = "rw"
+
+
+_ACCESSES = {"rw": 0, "r": _READ_ONLY, "acts": _WRITE_CALLS, "latches": _READ_CALLS}
+
+
+def packed(form: str, value: float) -> bytes:
+    """Return a number in a register's format, rounded, and at most what the format holds."""
+    bits = int(form[1:3].rstrip("bl"))
+    low, high = (-(1 << bits - 1), (1 << bits - 1) - 1) if form[0] == "s" else (0, (1 << bits) - 1)
+    whole = round(min(max(low, value), high))
+    data = whole.to_bytes(bits // 8, "big", signed=form[0] == "s")
+    return data[::-1] if form.endswith("le") else data
+
+
+def unpacked(form: str, data: bytes) -> int:
+    """Return the number in bytes of a register's format."""
+    order = "little" if form.endswith("le") else "big"
+    return int.from_bytes(data, order, signed=form[0] == "s")
+
+
+class Part:
+    """A part at ``places`` of a board: an I2C address, or pins.
+
+    ``ports`` names the inputs of `Arduino` that it measures; they are in ``inputs``, SI units, each
+    a number or a tuple. Of ports in groups (``angle``, ``distance``, ``temperature``) it has the one of the
+    number behind its name in ``wires``. ``pulses`` has the widths of pulses that it makes, s, by number of the
+    output ``pulse``.
+    """
+
+    ports: ClassVar[tuple[str, ...]] = ()
+    address: ClassVar[bool] = False
+    """Whether its place is an I2C address."""
+    pins: ClassVar[int] = 1
+    """How many pins it has, written with commas between."""
+    kind: ClassVar[int] = 0
+
+    def __init__(self, places: tuple[int, ...], number: int = 1) -> None:
+        self.places, self.number = places, number
+        self.inputs: dict[str, Any] = {}
+        self.pulses: dict[int, float] = {}
+        self.time = 0.0
+        """Seconds since the board has had power."""
+        self._records = Inputs()
+        self._index = 0
+        self.reset()
+
+    def reset(self) -> None:
+        """Begin as at power-on."""
+
+    def measure(self) -> None:
+        """Take in ``inputs``: called before the first step and when they have changed."""
+
+    # ------------------------------------------------------------------ for the board
+
+    def connect(self, index: int, records: Inputs) -> None:
+        """Put the part at the board as its part ``index``."""
+        self._index = index
+        records.put("I", self.places[0], self._mask(), self.kind)
+
+    def update(self, time: float, inputs: dict[str, Any], records: Inputs) -> None:
+        """Measure, and put what has changed into ``records``."""
+        self.time, self.inputs = time, inputs
+        self.measure()
+        self._flush(records)
+
+    def answer(self, call: int, value: int, cycle: int, sent: bytes) -> tuple[int, Inputs]:
+        """Answer a call of the board; return its result, and what has changed."""
+        self.time = cycle / CLOCK
+        result = self._called(call, value, sent)
+        records = Inputs()
+        self._flush(records)
+        return result, records
+
+    def _mask(self) -> int:
+        return 0
+
+    def _called(self, call: int, value: int, sent: bytes) -> int:
+        return 1
+
+    def _flush(self, records: Inputs) -> None:
+        records.data += self._records.data
+        self._records = Inputs()
+
+    def drive(self, pin: int, levels: Iterable[tuple[float, int]]) -> None:
+        """Drive a pin: (time, level) of each change, s; `NONE` leaves it. What was to come is dropped."""
+        self._records.put("f", pin)
+        for when, level in levels:
+            self._records.put("d", pin, float(round(when * CLOCK)), level)
+
+    def _reply(self, data: bytes, beyond: int, deaf: bool = False) -> None:
+        self._records.put("y", self._index, 0.0, int(deaf) << 8 | beyond)
+        self._extend(data)
+
+    def _extend(self, data: bytes) -> None:
+        for byte in data:
+            self._records.put("g", self._index, _REPLY, byte)
+
+
+class I2CRegisters(Part):
+    """A part with a pointer to registers: the first byte written sets it, and it advances.
+
+    ``pointer_mask`` takes the register out of the byte. Undeclared registers keep what is written.
+    """
+
+    kind = _REGISTERS
+    address = True
+    registers: ClassVar[dict[str, Register]] = {}
+    pointer_mask: ClassVar[int] = 0xFF
+    answers = True
+    """Whether it acknowledges its address."""
+
+    def __init__(self, places: tuple[int, ...], number: int = 1) -> None:
+        self.store = bytearray(256)
+        self._sent = bytearray(256)
+        self._answered = True
+        for register in self.registers.values():
+            self._put(register, register.value)
+        super().__init__(places, number)
+
+    def advanced(self, pointer: int) -> int:
+        """Return the pointer behind an access at ``pointer``."""
+        return pointer + 1
+
+    def written(self, name: str, value: int) -> bool:
+        """Act on a value that was written to a register that acts; return whether it is acknowledged."""
+        return True
+
+    def reading(self, name: str) -> None:
+        """Prepare a register that latches for being read."""
+
+    def put(self, name: str, value: float) -> None:
+        """Set a register: rounded, and at most what its format holds."""
+        self._put(self.registers[name], value)
+
+    def get(self, name: str) -> int:
+        """Return a register's value."""
+        register = self.registers[name]
+        size = len(packed(register.form, 0))
+        return unpacked(register.form, bytes(self.store[register.at : register.at + size]))
+
+    def _put(self, register: Register, value: float) -> None:
+        data = packed(register.form, value)
+        self.store[register.at : register.at + len(data)] = data
+
+    def _mask(self) -> int:
+        return self.pointer_mask
+
+    def connect(self, index: int, records: Inputs) -> None:
+        """Put the part at the board, with its registers."""
+        super().connect(index, records)
+        self._sent = bytearray(256)
+        for register in self.registers.values():
+            for at in range(register.at, register.at + len(packed(register.form, 0))):
+                if access := _ACCESSES[register.access]:
+                    records.put("g", index, _ACCESS, at << 8 | access)
+        for pointer in range(256):
+            if (following := self.advanced(pointer) & 0xFF) != (pointer + 1) & 0xFF:
+                records.put("g", index, _NEXT, pointer << 8 | following)
+        self._flush(records)
+
+    def _called(self, call: int, value: int, sent: bytes) -> int:
+        at = value >> 8 if call == WRITE else value
+        name = next(
+            (
+                name
+                for name, each in self.registers.items()
+                if each.at <= at < each.at + len(packed(each.form, 0))
+            ),
+            "",
+        )
+        if call == READ:
+            self.reading(name)
+            return 1
+        self.store[at] = self._sent[at] = value & 0xFF
+        return int(self.written(name, value & 0xFF))
+
+    def _flush(self, records: Inputs) -> None:
+        super()._flush(records)
+        if self.store != self._sent:
+            for at, (new, old) in enumerate(zip(self.store, self._sent, strict=True)):
+                if new != old:
+                    records.put("g", self._index, _STORE, at << 8 | new)
+            self._sent[:] = self.store
+        if self.answers != self._answered:
+            self._answered = self.answers
+            records.put("y", self._index, 0.0, int(not self.answers) << 8)
+
+
+class I2CStream(Part):
+    """A part that takes commands, byte by byte, and whose reply is then read."""
+
+    kind = _STREAM
+    address = True
+    begins: ClassVar[bool] = False
+    """Whether `begun` is called before each reading."""
+
+    def written(self, byte: int) -> bool:
+        """Take a byte in; return whether it is acknowledged."""
+        return True
+
+    def begun(self, left: int) -> None:
+        """Prepare a reply: it is addressed for reading; ``left`` bytes of the last have not been read."""
+
+    def reply(self, data: bytes, beyond: int = 0) -> None:
+        """Let ``data`` be read next, then ``beyond`` for ever."""
+        self._reply(data, beyond)
+
+    def _mask(self) -> int:
+        return _BEGINS if self.begins else 0
+
+    def _called(self, call: int, value: int, sent: bytes) -> int:
+        if call == WRITE:
+            return int(self.written(value))
+        self.begun(value)
+        return 1
+
+
+class SpiPart(Part):
+    """A part at the SPI, its first place the pin that selects it, low.
+
+    A byte goes each way at the same time, so that a reply is there before its byte has come.
+    """
+
+    kind = _SPI
+
+    def selected(self) -> None:
+        """Begin: the pin went low."""
+
+    def exchange(self, sent: bytes) -> bytes:
+        """Take in what has come since the last call, and return the next replies, one at least."""
+        return b"\xff"
+
+    def released(self, sent: bytes) -> None:
+        """End: the pin went high; ``sent`` has come since the last call."""
+
+    def _called(self, call: int, value: int, sent: bytes) -> int:
+        if call == TRANSFER:
+            self._reply(self.exchange(sent) or b"\xff", 0xFF)
+        elif value:
+            self._reply(b"", 0xFF)
+            self.selected()
+        else:
+            self.released(sent)
+        return 1
+
+
+class PinPart(Part):
+    """A part at pins, the first of which it follows."""
+
+    kind = _PIN
+
+    def edge(self, level: int) -> None:
+        """Take in that the sketch has turned the first pin, now, at ``time``."""
+
+    def _called(self, call: int, value: int, sent: bytes) -> int:
+        self.edge(value)
+        return 1
+
+
+class UartPart(Part):
+    """A part at the line of a UART, written ``uart1``, besides what is on ``rx``.
+
+    It has what the board sends at the end of each step, and is heard from the next on.
+    """
+
+    def received(self, data: bytes) -> None:
+        """Take in what the board has sent until ``time``."""
+
+    def send(self, data: bytes) -> None:
+        """Put bytes on the line to the board, one after the other at its rate."""
+        for byte in data:
+            self._records.put("U", self.places[0], self.time * CLOCK, byte)
+
+    def connect(self, index: int, records: Inputs) -> None:
+        """Put nothing at the board: its UART is there."""
