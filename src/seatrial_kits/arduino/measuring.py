@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, Any
 
 from seatrial.errors import InputError
@@ -15,13 +16,14 @@ if TYPE_CHECKING:
 ATMOSPHERE = 101325.0
 GROUPS = ("angle", "distance", "temperature")
 """Ports of which a part has the one of its number."""
-DERIVED = ("field", "pressure")
+DERIVED = ("field", "declination", "pressure")
 
 
 def measured(board: Arduino, part: Part) -> dict[str, Any]:
     """Return the inputs of a part, by name.
 
-    ``field`` is the magnetic one in body axes by ``attitude``, T; ``pressure`` that at ``depth`` under
+    ``field`` is the magnetic one in body axes by ``attitude``, T; ``declination`` its
+    angle east of north, rad; ``pressure`` that at ``depth`` under
     one atmosphere, Pa: p = p0 + rho g z.
     """
     return {name: _value(board, name, part.number) for name in part.ports}
@@ -41,6 +43,8 @@ def check_ports(board: Arduino, part: Part, written: str) -> None:
 def _value(board: Arduino, name: str, number: int) -> Any:
     if name == "field":
         return tuple(to_body(board.attitude, board.field_n))
+    if name == "declination":
+        return math.atan2(board.field_n[1], board.field_n[0])
     if name == "pressure":
         return ATMOSPHERE + board.water_density * board.gravity * board.depth
     value = getattr(board, name)

@@ -48,7 +48,8 @@ class Register:
 
     ``form`` is its format: ``u8 s16be u16le`` and so on, of one byte and more. ``access`` is
     ``rw``, ``r`` (writing does nothing), ``acts`` (`I2CRegisters.written` follows a write) or
-    ``latches`` (`I2CRegisters.reading` precedes a read).
+    ``latches`` (`I2CRegisters.reading` precedes a read). What is written to one of ``rw`` stays at the
+    board: a part that needs it declares ``acts``.
     """
 
     at: int
@@ -170,6 +171,7 @@ class I2CRegisters(Part):
         self.store = bytearray(256)
         self._sent = bytearray(256)
         self._answered = True
+        self._next: list[int] = []
         for register in self.registers.values():
             self._put(register, register.value)
         super().__init__(places, number)
@@ -210,9 +212,8 @@ class I2CRegisters(Part):
             for at in range(register.at, register.at + len(packed(register.form, 0))):
                 if access := _ACCESSES[register.access]:
                     records.put("g", index, _ACCESS, at << 8 | access)
-        for pointer in range(256):
-            if (following := self.advanced(pointer) & 0xFF) != (pointer + 1) & 0xFF:
-                records.put("g", index, _NEXT, pointer << 8 | following)
+        self._next = [(pointer + 1) & 0xFF for pointer in range(256)]
+        self._point()
         self._flush(records)
 
     def _called(self, call: int, value: int, sent: bytes) -> int:
@@ -229,7 +230,16 @@ class I2CRegisters(Part):
             self.reading(name)
             return 1
         self.store[at] = self._sent[at] = value & 0xFF
-        return int(self.written(name, value & 0xFF))
+        taken = self.written(name, value & 0xFF)
+        self._point()
+        return int(taken)
+
+    def _point(self) -> None:
+        """Send where the pointer goes, as far as that has changed."""
+        for pointer, sent in enumerate(self._next):
+            if (following := self.advanced(pointer) & 0xFF) != sent:
+                self._next[pointer] = following
+                self._records.put("g", self._index, _NEXT, pointer << 8 | following)
 
     def _flush(self, records: Inputs) -> None:
         super()._flush(records)

@@ -28,10 +28,6 @@ _WORDS = {
     "SIGNAL": "interrupt routines of the hardware are the emulator's: attachInterrupt has edges",
     "asm": "machine code of the AVR",
     "__asm__": "machine code of the AVR",
-    "portInputRegister": "ports as registers: digitalRead reads a pin",
-    "portOutputRegister": "ports as registers: digitalWrite drives a pin",
-    "digitalPinToPort": "ports as registers: digitalWrite drives a pin",
-    "digitalPinToBitMask": "ports as registers: digitalWrite drives a pin",
     "__heap_start": "the board's memory",
     "__brkval": "the board's memory",
 }
@@ -53,7 +49,9 @@ def unsupported(sketch: Sketch) -> list[str]:
             continue
         source = unconditional(read_source(file))
         for header, line in included(source):
-            if header.startswith(_HARDWARE) and f"core/{header}" not in TEXTS:
+            places = (file.parent, sketch.folder, *sketch.libraries)
+            own = any((place / header).is_file() for place in places)
+            if header.startswith(_HARDWARE) and f"core/{header}" not in TEXTS and not own:
                 problems.append(f"{file}:{line}: {_missing(header)}")
         words = [t for t in tokens(source) if t.kind == "word" and _unknown(t.text)]
         counts = Counter(token.text for token in words)

@@ -35,6 +35,10 @@ void pinMode(uint8_t pin, uint8_t mode)
 void digitalWrite(uint8_t pin, uint8_t level) { charge(70); machine::drive(pin, level != LOW); }
 int16_t digitalRead(uint8_t pin) { charge(60); return machine::level(pin); }
 
+volatile uint8_t *portInputRegister(uint8_t port) { return machine::register_of((uint8_t)(port - 1), 0); }
+volatile uint8_t *portModeRegister(uint8_t port) { return machine::register_of((uint8_t)(port - 1), 1); }
+volatile uint8_t *portOutputRegister(uint8_t port) { return machine::register_of((uint8_t)(port - 1), 2); }
+
 static double reference = 5.0; /* V */
 
 void analogReference(uint8_t which)

@@ -188,12 +188,14 @@ void interrupt()
 
 void happen()
 {
+    if (by_registers)
+        take_registers();
     while (next_due <= now) {
         first(true);
         next_due = first(false);
     }
     interrupt();
-    next_due = first(false);
+    next_due = by_registers ? 0 : first(false);
 }
 
 void refuse_hang()
@@ -231,10 +233,20 @@ void charge(uint32_t cycles)
         happen();
 }
 
+volatile uint8_t *register_of(uint8_t pin, int which)
+{
+    need_pin(pin);
+    by_registers = true;
+    next_due = 0;
+    return &registers[pin][which];
+}
+
 void pass_until(uint64_t when, bool event)
 {
+    if (by_registers)
+        take_registers();
     while (now < when) {
-        uint64_t due = next_due = first(false);
+        uint64_t due = next_due = first(false); /* nothing is written meanwhile */
         now = due < when ? (due > now ? due : now) : when;
         last_call = now;
         if (now >= next_due)

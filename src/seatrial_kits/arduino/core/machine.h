@@ -20,6 +20,7 @@ void drive(uint8_t pin, bool level); /* of an input: whether it is pulled up */
 void direct(uint8_t pin, bool output);
 bool level(uint8_t pin);
 double volts(uint8_t channel);
+volatile uint8_t *register_of(uint8_t pin, int which); /* 0 to 2: PIN, DDR, PORT; its bit 0 is the pin */
 void modulate(uint8_t pin, int share); /* PWM, 0 to 255 */
 
 void open_uart(uint8_t uart, uint32_t baud);

@@ -17,6 +17,12 @@ void need_pin(uint8_t pin)
         end("it uses pin %d: the %s has 0 to %d", pin, BOARD, BOARD_PINS - 1);
 }
 
+/* PIN, DDR and PORT as libraries use them that take a pin's registers (portOutputRegister): each pin has
+ * its own, of which bit 0 is the pin. Between stretches of code what was written there happens. */
+enum { OF_INPUT, OF_MODE, OF_OUTPUT };
+volatile uint8_t registers[PINS][3];
+bool by_registers; /* one was taken */
+
 void show(uint8_t pin)
 {
     if (pins[pin].watched)
@@ -28,6 +34,7 @@ void put_level(uint8_t pin, bool to)
     if (pins[pin].level == to)
         return;
     pins[pin].level = to;
+    registers[pin][OF_INPUT] = to;
     show(pin);
     for (int each = 0; each < INTERRUPTS; each++) {
         Interrupt &one = externals[each];
@@ -40,6 +47,8 @@ void put_level(uint8_t pin, bool to)
 void settle(uint8_t pin)
 {
     const Pin &one = pins[pin];
+    registers[pin][OF_MODE] = one.output;
+    registers[pin][OF_OUTPUT] = one.latch;
     put_level(pin, one.output || one.outside < 0 ? one.latch : one.outside > 0);
 }
 
@@ -50,6 +59,19 @@ void settle_own(uint8_t pin)
     settle(pin);
     if (pins[pin].part && pins[pin].level != before)
         part_edge(pin, pins[pin].level);
+}
+
+/* Let what was written to registers happen. */
+void take_registers()
+{
+    for (uint8_t pin = 0; pin < BOARD_PINS; pin++) {
+        bool output = registers[pin][OF_MODE] & 1, latch = registers[pin][OF_OUTPUT] & 1;
+        if (output == pins[pin].output && latch == pins[pin].latch)
+            continue;
+        pins[pin].output = output;
+        pins[pin].latch = latch;
+        settle_own(pin);
+    }
 }
 
 void watch_part(uint8_t place)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import ClassVar
+
 from ..part import I2CRegisters, Register
 
 _PER_GAUSS = (1370, 1090, 820, 660, 440, 390, 330, 230)
@@ -15,7 +17,9 @@ class Hmc5883l(I2CRegisters):
 
     ports = ("field",)
     pointer_mask = 0x7F
-    registers = {
+    counts: ClassVar = {"X": _PER_GAUSS, "Y": _PER_GAUSS, "Z": _PER_GAUSS}
+    """Counts per gauss of each axis, by the gain."""
+    registers: ClassVar = {
         "CONFIG_A": Register(0x00, 0x10, access="acts"),
         "CONFIG_B": Register(0x01, 0x20, access="acts"),
         "MODE": Register(0x02, 0x01, access="acts"),
@@ -44,9 +48,9 @@ class Hmc5883l(I2CRegisters):
             return
         self.put("MODE", mode << 1 | mode if mode & 3 == 1 else mode)
         test = self.get("CONFIG_A") & 3
-        per_gauss = _PER_GAUSS[self.get("CONFIG_B") >> 5]
+        gain = self.get("CONFIG_B") >> 5
         for axis, tesla, bias in zip("XYZ", self.inputs["field"], _BIAS, strict=True):
             gauss = {1: bias, 2: -bias}.get(test, tesla * 1e4)
-            raw = gauss * per_gauss
+            raw = gauss * self.counts[axis][gain]
             self.put(axis, _OVERFLOW if abs(raw) > 2047.5 else raw)
         self.put("STATUS", 1)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import ClassVar
 
 from seatrial.model.unit_table import STANDARD_GRAVITY
 
@@ -21,7 +22,7 @@ class Mpu6050(I2CRegisters):
 
     ports = ("gyro", "accelerometer", "water_temperature")
     pointer_mask = 0x7F
-    registers = {
+    registers: ClassVar = {
         "GYRO_CONFIG": Register(0x1B, access="acts"),
         "ACCEL_CONFIG": Register(0x1C, access="acts"),
         **{f"ACCEL_{axis}": Register(0x3B + 2 * n, form="s16be") for n, axis in enumerate(_AXES)},

@@ -9,20 +9,37 @@ from pathlib import Path
 from seatrial.errors import InputError, unknown
 
 from ..part import Part
+from .as5600 import As5600
+from .bno055 import Bno055
+from .cmps12 import Cmps12
+from .ds18b20 import Ds18b20
+from .hcsr04 import HcSr04
 from .hmc5883l import Hmc5883l
+from .lsm303 import Lsm303Accelerometer, Lsm303Magnetometer
 from .mpu6050 import Mpu6050
 from .ms5837 import Ms5837
+from .pca9685 import Pca9685
 from .pixy import Pixy
+from .qmc5883l import Qmc5883l
 
 GROUP = "seatrial.arduino_parts"
 """Entry-point group that packages add parts to."""
 _FILE = ".py:"
 
 SHELF: dict[str, type[Part]] = {
+    "as5600": As5600,
+    "bno055": Bno055,
+    "cmps12": Cmps12,
+    "ds18b20": Ds18b20,
+    "hcsr04": HcSr04,
     "hmc5883l": Hmc5883l,
+    "lsm303_accelerometer": Lsm303Accelerometer,
+    "lsm303_magnetometer": Lsm303Magnetometer,
     "mpu6050": Mpu6050,
     "ms5837": Ms5837,
+    "pca9685": Pca9685,
     "pixy": Pixy,
+    "qmc5883l": Qmc5883l,
 }
 
 
