@@ -8,9 +8,11 @@ writes registers by itself: the class is called for those only that are declared
 from __future__ import annotations
 
 import inspect
+import struct
 from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from functools import cache
+from typing import Any, ClassVar, Literal
 
 from seatrial.errors import SimulationError
 
@@ -18,7 +20,10 @@ from .board import Inputs
 from .mcus import CLOCK
 
 _REGISTERS, _STREAM, _SPI, _PIN = 1, 2, 3, 4
-_STORE, _NEXT, _ACCESS, _REPLY = 0, 1, 2, 3
+_NEXT, _ACCESS, _REPLY = 1, 2, 3
+_RUN = 8
+_BYTES = struct.Struct(f"<BBH{_RUN}s")
+"""Registers that follow each other, in one record."""
 _BEGINS = 0x100
 _READ_ONLY, _WRITE_CALLS, _READ_CALLS = 1, 2, 4
 BEGIN, WRITE, READ, TRANSFER, SELECT, EDGE = b"bwrxse"
@@ -57,23 +62,34 @@ class Register:
     form: str = "u8"
     access: str = "rw"
 
+    @property
+    def places(self) -> range:
+        """The addresses of its bytes."""
+        return range(self.at, self.at + _format(self.form)[0])
+
 
 _ACCESSES = {"rw": 0, "r": _READ_ONLY, "acts": _WRITE_CALLS, "latches": _READ_CALLS}
 
 
+@cache
+def _format(form: str) -> tuple[int, Literal["little", "big"], bool, int, int]:
+    """Return bytes, order, whether signed, and the least and greatest number of a format."""
+    signed, order = form[0] == "s", "little" if form.endswith("le") else "big"
+    bits = int(form[1:].rstrip("ble"))
+    low, high = (-(1 << bits - 1), (1 << bits - 1) - 1) if signed else (0, (1 << bits) - 1)
+    return bits // 8, order, signed, low, high  # type: ignore[return-value]
+
+
 def packed(form: str, value: float) -> bytes:
     """Return a number in a register's format, rounded, and at most what the format holds."""
-    bits = int(form[1:3].rstrip("bl"))
-    low, high = (-(1 << bits - 1), (1 << bits - 1) - 1) if form[0] == "s" else (0, (1 << bits) - 1)
-    whole = round(min(max(low, value), high))
-    data = whole.to_bytes(bits // 8, "big", signed=form[0] == "s")
-    return data[::-1] if form.endswith("le") else data
+    size, order, signed, low, high = _format(form)
+    return round(min(max(low, value), high)).to_bytes(size, order, signed=signed)
 
 
 def unpacked(form: str, data: bytes) -> int:
     """Return the number in bytes of a register's format."""
-    order = "little" if form.endswith("le") else "big"
-    return int.from_bytes(data, order, signed=form[0] == "s")
+    _, order, signed, _, _ = _format(form)
+    return int.from_bytes(data, order, signed=signed)
 
 
 class Part:
@@ -169,7 +185,7 @@ class I2CRegisters(Part):
 
     def __init__(self, places: tuple[int, ...], number: int = 1) -> None:
         self.store = bytearray(256)
-        self._sent = bytearray(256)
+        self._unsent: list[tuple[int, int]] = []
         self._answered = True
         self._next: list[int] = []
         for register in self.registers.values():
@@ -194,12 +210,26 @@ class I2CRegisters(Part):
     def get(self, name: str) -> int:
         """Return a register's value."""
         register = self.registers[name]
-        size = len(packed(register.form, 0))
-        return unpacked(register.form, bytes(self.store[register.at : register.at + size]))
+        places = register.places
+        return unpacked(register.form, self.store[places.start : places.stop])
+
+    def put_vector(self, first: str, values: Iterable[float]) -> None:
+        """Set registers of the format of the first, one behind the other."""
+        register = self.registers[first]
+        size, order, signed, low, high = _format(register.form)
+        whole = [round(min(max(low, value), high)) for value in values]
+        data = b"".join(each.to_bytes(size, order, signed=signed) for each in whole)
+        self._store(register, data)
 
     def _put(self, register: Register, value: float) -> None:
-        data = packed(register.form, value)
-        self.store[register.at : register.at + len(data)] = data
+        self._store(register, packed(register.form, value))
+
+    def _store(self, register: Register, data: bytes) -> None:
+        begin, end = register.at, register.at + len(data)
+        # Of registers that the sketch may have written, the board's value is another.
+        if register.access == "rw" or self.store[begin:end] != data:
+            self.store[begin:end] = data
+            self._unsent.append((begin, end))
 
     def _mask(self) -> int:
         return self.pointer_mask
@@ -207,9 +237,9 @@ class I2CRegisters(Part):
     def connect(self, index: int, records: Inputs) -> None:
         """Put the part at the board, with its registers."""
         super().connect(index, records)
-        self._sent = bytearray(256)
         for register in self.registers.values():
-            for at in range(register.at, register.at + len(packed(register.form, 0))):
+            self._unsent.append((register.places.start, register.places.stop))
+            for at in register.places:
                 if access := _ACCESSES[register.access]:
                     records.put("g", index, _ACCESS, at << 8 | access)
         self._next = [(pointer + 1) & 0xFF for pointer in range(256)]
@@ -218,18 +248,11 @@ class I2CRegisters(Part):
 
     def _called(self, call: int, value: int, sent: bytes) -> int:
         at = value >> 8 if call == WRITE else value
-        name = next(
-            (
-                name
-                for name, each in self.registers.items()
-                if each.at <= at < each.at + len(packed(each.form, 0))
-            ),
-            "",
-        )
+        name = next((name for name, each in self.registers.items() if at in each.places), "")
         if call == READ:
             self.reading(name)
             return 1
-        self.store[at] = self._sent[at] = value & 0xFF
+        self.store[at] = value & 0xFF
         taken = self.written(name, value & 0xFF)
         self._point()
         return int(taken)
@@ -243,11 +266,12 @@ class I2CRegisters(Part):
 
     def _flush(self, records: Inputs) -> None:
         super()._flush(records)
-        if self.store != self._sent:
-            for at, (new, old) in enumerate(zip(self.store, self._sent, strict=True)):
-                if new != old:
-                    records.put("g", self._index, _STORE, at << 8 | new)
-            self._sent[:] = self.store
+        for begin, end in self._unsent:
+            for at in range(begin, end, _RUN):
+                count = min(_RUN, end - at)
+                data = self.store[at : at + count]
+                records.data += _BYTES.pack(ord("G"), self._index, at << 8 | count, data)
+        self._unsent.clear()
         if self.answers != self._answered:
             self._answered = self.answers
             records.put("y", self._index, 0.0, int(not self.answers) << 8)

@@ -127,6 +127,7 @@ static void take_input(const link_input *input)
         break;
     case IN_PART: part_add(input); watch_part(index); break;
     case IN_REGISTER: part_set(input); break;
+    case IN_REGISTERS: part_store(input); break;
     case IN_REPLY: part_clear(input); break;
     case IN_DRIVE: drive_add(index % PINS, (uint8_t)input->value, (uint64_t)input->number); restart_drives(); break;
     case IN_FORGET: drive_forget(index % PINS); restart_drives(); break;

@@ -97,6 +97,7 @@ void take_input(const link_input *input)
     case IN_PULSE: wave_set(index, 1, input->number, now); break;
     case IN_PART: part_add(input); watch_part(index); break;
     case IN_REGISTER: part_set(input); break;
+    case IN_REGISTERS: part_store(input); break;
     case IN_REPLY: part_clear(input); break;
     case IN_DRIVE: drive_add(index % PINS, (uint8_t)input->value, (uint64_t)input->number); break;
     case IN_FORGET: drive_forget(index % PINS); break;
@@ -213,7 +214,7 @@ void *run(void *)
     catch_crashes();
     if (!resumed)
         target = link_read();
-    next_due = first(false);
+    next_due = by_registers ? 0 : first(false);
     setup();
     for (;;) {
         last_call = now;
@@ -237,7 +238,8 @@ volatile uint8_t *register_of(uint8_t pin, int which)
 {
     need_pin(pin);
     by_registers = true;
-    next_due = 0;
+    if (next_due != NEVER)
+        next_due = 0;
     return &registers[pin][which];
 }
 

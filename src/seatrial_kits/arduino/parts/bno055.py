@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from typing import ClassVar
 
 from seatrial.model.unit_table import STANDARD_GRAVITY
@@ -80,25 +81,24 @@ class Bno055(I2CRegisters):
         per_rate = 900.0 if units & 2 else math.degrees(16.0)
         force, north_east_down = self.inputs["accelerometer"], _axes(self.inputs["attitude"])
         gravity = [-STANDARD_GRAVITY * each for each in north_east_down]
-        self._vector("ACC", "XYZ", force, per_force * ("A" in on))
-        self._vector("MAG", "XYZ", self.inputs["field"], 1.6e7 * ("M" in on))
-        self._vector("GYR", "XYZ", self.inputs["gyro"], per_rate * ("G" in on))
-        self._vector("GRV", "XYZ", gravity, per_force * fuses)
+        self._put_scaled("ACC_X", force, per_force * ("A" in on))
+        self._put_scaled("MAG_X", self.inputs["field"], 1.6e7 * ("M" in on))
+        self._put_scaled("GYR_X", self.inputs["gyro"], per_rate * ("G" in on))
+        self._put_scaled("GRV_X", gravity, per_force * fuses)
         linear = [a - b for a, b in zip(force, gravity, strict=True)]
-        self._vector("LIA", "XYZ", linear, per_force * fuses)
+        self._put_scaled("LIA_X", linear, per_force * fuses)
         phi, theta, psi = self.inputs["attitude"]
         magnetic = (psi - self.inputs["declination"]) % math.tau
         per_angle = 900.0 if units & 4 else math.degrees(16.0)
-        self._vector("EUL", "HRP", (magnetic, phi, theta), per_angle * fuses)
-        self._vector("QUA", "WXYZ", _quaternion(phi, theta, magnetic), 16384.0 * fuses)
+        self._put_scaled("EUL_H", (magnetic, phi, theta), per_angle * fuses)
+        self._put_scaled("QUA_W", _quaternion(phi, theta, magnetic), 16384.0 * fuses)
         celsius = self.inputs["temperature"] - 273.15
         self.put("TEMP", (celsius * 9.0 / 5.0 + 32.0) / 2.0 if units & 0x10 else celsius)
         self.put("CALIB_STAT", 0xFF if fuses else 0)
         self.put("SYS_STATUS", 5 if fuses else 6 if mode else 0)
 
-    def _vector(self, name: str, axes: str, values: object, scale: float) -> None:
-        for axis, value in zip(axes, values, strict=True):  # type: ignore[call-overload]
-            self.put(f"{name}_{axis}", value * scale)
+    def _put_scaled(self, first: str, values: Iterable[float], scale: float) -> None:
+        self.put_vector(first, [value * scale for value in values])
 
 
 def _axes(attitude: tuple[float, float, float]) -> tuple[float, float, float]:

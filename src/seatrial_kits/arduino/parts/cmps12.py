@@ -50,5 +50,4 @@ class Cmps12(I2CRegisters):
             ("ACC", "accelerometer", 981.0 / STANDARD_GRAVITY),
             ("GYR", "gyro", math.degrees(16.0)),
         ):
-            for axis, value in zip("XYZ", self.inputs[port], strict=True):
-                self.put(f"{name}_{axis}", value * scale)
+            self.put_vector(f"{name}_X", [value * scale for value in self.inputs[port]])

@@ -9,7 +9,6 @@ from seatrial.model.unit_table import STANDARD_GRAVITY
 
 from ..part import I2CRegisters, Register
 
-_AXES = "XYZ"
 _SLEEP = 0x40
 
 
@@ -25,9 +24,12 @@ class Mpu6050(I2CRegisters):
     registers: ClassVar = {
         "GYRO_CONFIG": Register(0x1B, access="acts"),
         "ACCEL_CONFIG": Register(0x1C, access="acts"),
-        **{f"ACCEL_{axis}": Register(0x3B + 2 * n, form="s16be") for n, axis in enumerate(_AXES)},
-        "TEMP": Register(0x41, form="s16be"),
-        **{f"GYRO_{axis}": Register(0x43 + 2 * n, form="s16be") for n, axis in enumerate(_AXES)},
+        **{
+            name: Register(0x3B + 2 * n, 0, "s16be", "r")
+            for n, name in enumerate(
+                ("ACCEL_X", "ACCEL_Y", "ACCEL_Z", "TEMP", "GYRO_X", "GYRO_Y", "GYRO_Z")
+            )
+        },
         "PWR_MGMT_1": Register(0x6B, _SLEEP, access="acts"),
         "WHO_AM_I": Register(0x75, 0x68),
     }
@@ -43,9 +45,7 @@ class Mpu6050(I2CRegisters):
             return
         per_g = 16384.0 / (1 << (self.get("ACCEL_CONFIG") >> 3 & 3))
         per_dps = 131.0 / (1 << (self.get("GYRO_CONFIG") >> 3 & 3))
-        for axis, force, rate in zip(
-            _AXES, self.inputs["accelerometer"], self.inputs["gyro"], strict=True
-        ):
-            self.put(f"ACCEL_{axis}", force / STANDARD_GRAVITY * per_g)
-            self.put(f"GYRO_{axis}", math.degrees(rate) * per_dps)
-        self.put("TEMP", (self.inputs["water_temperature"] - 273.15 - 36.53) * 340.0)
+        force = [each / STANDARD_GRAVITY * per_g for each in self.inputs["accelerometer"]]
+        rate = [math.degrees(each) * per_dps for each in self.inputs["gyro"]]
+        temperature = (self.inputs["water_temperature"] - 273.15 - 36.53) * 340.0
+        self.put_vector("ACCEL_X", [*force, temperature, *rate])

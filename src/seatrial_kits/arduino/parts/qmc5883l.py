@@ -39,7 +39,6 @@ class Qmc5883l(I2CRegisters):
         if not control & 1:
             return
         counts = [tesla * 1e4 * _PER_GAUSS[control >> 4 & 3] for tesla in self.inputs["field"]]
-        for axis, count in zip("XYZ", counts, strict=True):
-            self.put(axis, count)
+        self.put_vector("X", counts)
         over = any(abs(count) > 32767 for count in counts)
         self.put("STATUS", _READY | (_OVERFLOW if over else 0))

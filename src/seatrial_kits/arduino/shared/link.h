@@ -41,8 +41,9 @@ enum {
     IN_LEVEL = 'L',     /* at pin `index` */
     IN_FREQUENCY = 'F', /* of a square wave at pin `index`, Hz */
     IN_PULSE = 'R',     /* width of the servo pulses at pin `index`, s */
-    IN_PART = 'I',      /* a part of kind `value` at address or pin `index`: see parts.h, as of the next two */
+    IN_PART = 'I',      /* a part of kind `value` at address or pin `index`: see parts.h, as of the next three */
     IN_REGISTER = 'g',
+    IN_REGISTERS = 'G',
     IN_REPLY = 'y',
     IN_DRIVE = 'd',     /* a part drives pin `index` at cycle `number` to level `value`; 2: it leaves it */
     IN_FORGET = 'f',    /* what parts were to drive at pin `index` is off */

@@ -8,7 +8,7 @@
 #include <string.h>
 
 enum { PART_REGISTERS = 1, PART_STREAM, PART_SPI, PART_PIN };
-enum { TABLE_STORE = 0, TABLE_NEXT, TABLE_ACCESS, TABLE_REPLY };
+enum { TABLE_NEXT = 1, TABLE_ACCESS, TABLE_REPLY };
 enum { ACCESS_READ_ONLY = 1, ACCESS_WRITE_CALLS = 2, ACCESS_READ_CALLS = 4 };
 enum { CALL_BEGIN = 'b', CALL_WRITE = 'w', CALL_READ = 'r', CALL_TRANSFER = 'x', CALL_SELECT = 's', CALL_EDGE = 'e' };
 enum { PARTS = 16, PART_BYTES = 1024, PART_BEGINS = 0x100, PART_MASK = 0xFF };
@@ -45,14 +45,13 @@ static void part_add(const link_input *input)
         one->next[each] = (uint8_t)(each + 1);
 }
 
-/* IN_REGISTER: of part `index`, byte `number` % 256 of table `number` / 256 is the low byte of `value`, at
- * its high one; of replies, it comes behind those there are. */
+/* IN_REGISTER: of part `index`, entry of table `number` at the high byte of `value` is its low one; of
+ * replies, it comes behind those there are. */
 static void part_set(const link_input *input)
 {
     part *one = &parts[input->index % PARTS];
     uint8_t at = (uint8_t)(input->value >> 8), data = (uint8_t)input->value;
     switch ((int)input->number) {
-    case TABLE_STORE: one->store[at] = data; break;
     case TABLE_NEXT: one->next[at] = data; break;
     case TABLE_ACCESS: one->access[at] = data; break;
     case TABLE_REPLY:
@@ -60,6 +59,13 @@ static void part_set(const link_input *input)
             one->reply[one->reply_length++] = data;
         break;
     }
+}
+
+/* IN_REGISTERS: of part `index`, as many registers as the low byte of `value` says, from its high one on: the
+ * bytes of `number`. */
+static void part_store(const link_input *input)
+{
+    memcpy(parts[input->index % PARTS].store + (input->value >> 8), &input->number, input->value & 0xFF);
 }
 
 /* IN_REPLY: the replies of part `index` are dropped; whether it is `deaf`, and the byte `beyond` its replies. */
