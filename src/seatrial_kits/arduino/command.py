@@ -20,6 +20,7 @@ from .dialect import LIMITS
 from .emulator import build_emulator, build_firmware
 from .libraries import read_source
 from .mcus import MCUS, Mcu
+from .platformio import project_mcu
 from .sketch import Sketch, find_sketch
 from .target_board import target_text
 from .wiring import Wire, read_uarts, read_wires
@@ -35,6 +36,7 @@ _BACKEND = Annotated[str, typer.Option(help="'host' or 'simavr'.")]
 _MCU = Annotated[str, typer.Option(help="atmega2560 or atmega328p.")]
 _PROFILE = Annotated[str, typer.Option(help="PROFILE:LINK whose parameters to use: gloria:mega.")]
 _LIBRARIES = Annotated[str, typer.Option(help="Folders of libraries, from the sketch's on; with ;")]
+_ENVIRONMENT = Annotated[str, typer.Option(help="Of platformio.ini; default_envs if none.")]
 _FLAGS = Annotated[str, typer.Option(help="Options of the compiler, as '-DNAME=VALUE'.")]
 
 
@@ -69,12 +71,17 @@ def check(
     mcu: _MCU = "",
     libraries: _LIBRARIES = "",
     flags: _FLAGS = "",
+    environment: _ENVIRONMENT = "",
 ) -> None:
     """Say what a sketch is made of, what of it is unsupported, and if its lines fit a profile."""
-    values = _values(profile, mcu=mcu, libraries=libraries, flags=flags)
+    values = _values(profile, mcu=mcu, libraries=libraries, flags=flags, environment=environment)
     found = _found(sketch, values)
-    board = MCUS[values["mcu"]]
+    board = _mcu(found, values)
     print(printable(f"{found.name} on the {board.board} ({board.name})"))
+    if project := found.project:
+        print(printable(f"  environment {project.environment}, board {project.board}"))
+        for flag in project.ignored:
+            print(printable(f"  flag that changes nothing here: {flag}"))
     for kind, files in (
         ("tab", found.tabs),
         ("source", found.others),
@@ -108,11 +115,12 @@ def build(
     mcu: _MCU = "",
     libraries: _LIBRARIES = "",
     flags: _FLAGS = "",
+    environment: _ENVIRONMENT = "",
 ) -> None:
     """Build a sketch, and say where the program or the firmware is."""
-    values = _values(profile, mcu=mcu, libraries=libraries, flags=flags)
-    board = MCUS[values["mcu"]]
+    values = _values(profile, mcu=mcu, libraries=libraries, flags=flags, environment=environment)
     found = _found(sketch, values)
+    board = _mcu(found, values)
     print(_built(found, board, _checked_backend(backend)))
 
 
@@ -124,6 +132,7 @@ def run(
     mcu: _MCU = "",
     libraries: _LIBRARIES = "",
     flags: _FLAGS = "",
+    environment: _ENVIRONMENT = "",
     seconds: Annotated[float, typer.Option(help="How long.")] = float("inf"),
 ) -> None:
     """Run a sketch in real time, each UART at a pseudo-terminal that any terminal program opens.
@@ -131,7 +140,7 @@ def run(
     Its sensors rest: for a boat around it, run a rig. Ends with Ctrl-C.
     """
     board = Arduino(Path(sketch).stem)
-    values = _values(profile, mcu=mcu, libraries=libraries, flags=flags)
+    values = _values(profile, mcu=mcu, libraries=libraries, flags=flags, environment=environment)
     values |= {"backend": _checked_backend(backend), "sketch": sketch}
     if not profile and (opened := _opened(_found(sketch, values))):
         values["uarts"] = opened
@@ -153,6 +162,13 @@ def run(
         print("ended")
     finally:
         board.close()
+
+
+def _mcu(sketch: Sketch, values: dict[str, Any]) -> Mcu:
+    """Return the microcontroller, a project's if there is one; keep it in the values."""
+    if sketch.project is not None:
+        values["mcu"] = project_mcu(sketch.project, values["mcu"])
+    return MCUS[values["mcu"]]
 
 
 def _built(sketch: Sketch, board: Mcu, backend: str) -> Path:
@@ -181,7 +197,8 @@ def _checked_backend(backend: str) -> str:
 
 
 def _found(sketch: str, values: dict[str, Any]) -> Sketch:
-    return find_sketch(sketch, values.get("libraries", ""), values.get("flags", ""))
+    given = (str(values.get(name, "")) for name in ("libraries", "flags", "environment"))
+    return find_sketch(sketch, *given)
 
 
 def _values(profile: str, **given: str) -> dict[str, Any]:

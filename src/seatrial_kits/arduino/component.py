@@ -26,7 +26,8 @@ from .parts.shelf import part_class
 from .ports import ArduinoPorts
 from .pulses import Pulses
 from .real_board import RealBoard
-from .sketch import find_sketch
+from .platformio import project_mcu, project_of, read_project
+from .sketch import Sketch, find_sketch
 from .uart_links import open_links
 from .wiring import STEPPERS, UARTS, Wire, read_uarts, read_wires
 
@@ -94,8 +95,8 @@ class Arduino(ArduinoPorts):
     def start(self, t: float) -> None:
         """Build what is to run, and connect the wires."""
         self.close()
-        mcu = MCUS[self.mcu]
         try:
+            mcu = self._board_mcu()
             self._wires = read_wires(self.wires, mcu)
             there = {*range(mcu.uarts), *(w.number for w in self._wires if w.kind in _SOFT)}
             self._rates = {k: v for k, v in read_uarts(self.uarts).items() if k in there}
@@ -163,8 +164,18 @@ class Arduino(ArduinoPorts):
 
     # ------------------------------------------------------------------ inside
 
+    def _found(self) -> Sketch:
+        return find_sketch(self.sketch, self.libraries, self.flags, self.environment)
+
+    def _board_mcu(self) -> Mcu:
+        """Return the microcontroller: a project's, where the sketch is one of PlatformIO."""
+        file = project_of(Path(self.sketch).expanduser()) if self.sketch else None
+        return MCUS[
+            project_mcu(read_project(file, self.environment), self.mcu) if file else self.mcu
+        ]
+
     def _begin(self) -> None:
-        mcu = MCUS[self.mcu]
+        mcu = self._board_mcu()
         if self.backend == "board":
             self._board = RealBoard(
                 self.name, self.links, self.safe_state, self.timeout, self._wires
@@ -175,7 +186,7 @@ class Arduino(ArduinoPorts):
         if self.backend == "host":
             if self.firmware:
                 raise InputError("firmware needs the back end 'simavr'; 'host' runs a sketch")
-            sketch = find_sketch(self.sketch, self.libraries, self.flags)
+            sketch = self._found()
             program = build_host(sketch, mcu)
             self._board = Board(self.name, program, str(self.patience), answer=self._answer)
             return
@@ -223,7 +234,7 @@ class Arduino(ArduinoPorts):
             self._board = None
 
     def _built(self, mcu: Mcu) -> Path:
-        return build_firmware(find_sketch(self.sketch, self.libraries, self.flags), mcu)
+        return build_firmware(self._found(), mcu)
 
     def _connect(self, inputs: Inputs) -> None:
         for address, byte in enumerate(self._eeprom):
@@ -318,7 +329,7 @@ class Arduino(ArduinoPorts):
         return earth_field(*home, start_us(self.date) * 1e-6)
 
     def _channel(self, wire: Wire) -> int:
-        return wire.place - MCUS[self.mcu].first_analog
+        return wire.place - self._board_mcu().first_analog
 
     def _hear(self, uart: int, data: bytes) -> None:
         for part in self._parts:

@@ -36,11 +36,16 @@ class ArduinoPorts(Reachable, Component):
 
     backend = Parameter("host", "1", "what runs the sketch", choices=BACKENDS)
     mcu = Parameter("atmega2560", "1", "microcontroller", choices=tuple(MCUS))
-    sketch = Parameter("", "1", "folder of the sketch, or its .ino", role="file")
+    sketch = Parameter(
+        "", "1", "folder of the sketch, its .ino, or a folder with a platformio.ini", role="file"
+    )
     firmware = Parameter(
         "", "1", "simavr: a .hex or .elf file in the place of a sketch", role="file"
     )
     libraries = Parameter("", "1", "folders of libraries, relative to the sketch's folder; with ;")
+    environment = Parameter(
+        "", "1", "of a project's platformio.ini; none: default_envs, or the only one"
+    )
     flags = Parameter(
         "", "1", "options of the compiler, as -DNAME=VALUE; separated by spaces", check=read_flags
     )

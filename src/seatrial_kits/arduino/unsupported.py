@@ -95,11 +95,15 @@ def missing_headers(sketch: Sketch, command: list[str], main: Path) -> list[str]
         )
         headers = shlex.split(done.stdout.replace("\\\n", " ").partition(":")[2])
         absent += [each for each in headers if not Path(each).exists()]
+    needs = sketch.project.needs if sketch.project else ()
+    more = (
+        [f"platformio.ini needs {', '.join(needs)}: 'pio pkg install' brings them"] if needs else []
+    )
     return [
         f"{place}: {_missing(header)}"
         for header in dict.fromkeys(absent)
         for place in _includes(sketch, header)[:1]
-    ]
+    ] + (more if absent else [])
 
 
 def _includes(sketch: Sketch, header: str) -> list[str]:

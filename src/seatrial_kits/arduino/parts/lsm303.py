@@ -46,9 +46,7 @@ class Lsm303Accelerometer(I2CRegisters):
         if not control >> 4:
             return
         milli_g = _MILLI_G[self.get("CTRL4") >> 4 & 3]
-        for bit, (axis, force) in enumerate(
-            zip("XYZ", self.inputs["accelerometer"], strict=True)
-        ):
+        for bit, (axis, force) in enumerate(zip("XYZ", self.inputs["accelerometer"], strict=True)):
             count = round(force / STANDARD_GRAVITY * 1000.0 / milli_g)
             self.put(axis, 16 * min(max(count, -2048), 2047) if control >> bit & 1 else 0)
         self.put("STATUS", _NEW_DATA)
