@@ -63,9 +63,7 @@ void loop() {
 def test_lsm303(tmp_path, backend):
     """By Pololu's notes 1 mg and 16 counts (12 bits on the left), 1100 and 980 counts per gauss."""
     wires = "0x19 lsm303_accelerometer; 0x1E lsm303_magnetometer"
-    read = said(
-        tmp_path, backend, LSM303, wires, libraries=["lsm303-arduino"], accelerometer=FORCE
-    )
+    read = said(tmp_path, backend, LSM303, wires, libraries=["lsm303-arduino"], accelerometer=FORCE)
     assert [each / 16 for each in read[:3]] == pytest.approx(
         [each / 9.80665 * 1000 for each in FORCE], abs=1
     )
@@ -127,9 +125,7 @@ void loop() {
 """
     libraries = ["Adafruit_BNO055", "Adafruit_BusIO", "Adafruit_Sensor"]
     ports = {"accelerometer": FORCE, "gyro": GYRO, "attitude": ATTITUDE, "temperature.t1": 290.15}
-    read = said(
-        tmp_path, backend, source, "0x28 bno055", libraries=libraries, seconds=3.0, **ports
-    )
+    read = said(tmp_path, backend, source, "0x28 bno055", libraries=libraries, seconds=3.0, **ports)
     phi, theta, psi = (math.degrees(each) for each in ATTITUDE)
     euler = [psi - math.degrees(DECLINATION), phi, theta]
     assert read[:3] == pytest.approx(euler, abs=1 / 16)
@@ -183,9 +179,7 @@ void loop() {
 """
     libraries = ["OneWire", "Arduino-Temperature-Control-Library"]
     ports = {"temperature.t3": 273.15 - 1.5625}
-    read = said(
-        tmp_path, backend, source, "7 ds18b20 3", libraries=libraries, seconds=2.0, **ports
-    )
+    read = said(tmp_path, backend, source, "7 ds18b20 3", libraries=libraries, seconds=2.0, **ports)
     assert read[:2] == [1, 0x28]
     assert read[2] == pytest.approx(750, abs=20)
     assert read[3] == -1.5625

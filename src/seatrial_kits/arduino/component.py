@@ -294,7 +294,8 @@ class Arduino(ArduinoPorts):
                 made = part_class(wire.kind, folder)((wire.place, *wire.more), wire.number or 1)
                 check_ports(self, made, wire.kind)
                 parts.append(made)
-        return parts
+        # The board counts those at its buses and pins.
+        return sorted(parts, key=lambda part: isinstance(part, UartPart))
 
     def _answer(
         self, call: int, index: int, value: int, cycle: int, sent: bytes

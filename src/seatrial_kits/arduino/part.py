@@ -7,11 +7,11 @@ writes registers by itself: the class is called for those only that are declared
 
 from __future__ import annotations
 
-import inspect
 import struct
 from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cache
+from traceback import walk_tb
 from typing import Any, ClassVar, Literal
 
 from seatrial.errors import SimulationError
@@ -34,13 +34,11 @@ NONE = 2
 
 def part_failed(board: str, part: Part, error: Exception) -> SimulationError:
     """Return an error of a part's class, with the line of its file."""
-    trace = error.__traceback__
-    line = 0
-    file = inspect.getfile(type(part))
-    while trace is not None:
-        if trace.tb_frame.f_code.co_filename == file:
-            line = trace.tb_lineno
-        trace = trace.tb_next
+    frames = [
+        each for each in walk_tb(error.__traceback__) if each[0].f_code.co_filename != __file__
+    ]
+    frame, line = frames[-1]
+    file = frame.f_code.co_filename
     return SimulationError(
         f"{board}: the part {type(part).__name__} has failed ({file}:{line}): "
         f"{type(error).__name__}: {error}"
