@@ -16,6 +16,7 @@ from .channels import Array, Channel, Log, channel
 from .clock_times import of_day, parsed_time, past_midnight
 from .formats import Format
 from .quantities import QUANTITIES, Column, series
+from .run_log import of_craft
 
 _SEPARATORS = (";", "\t", ",")
 _WITH_UNIT = re.compile(r"(.+?)\s*[\[(]([^\[\]()]+)[\])]")
@@ -66,8 +67,10 @@ def _read(path: Path, time: Column | None) -> Log:
             "--columns time=NAME names it"
         )
     rows = np.arange(len(table.rows), dtype=np.float64)
-    log = Log(path, {name: table.channel(name, rows) for name in table.names},
-              {what: [what] for what in QUANTITIES}, row="line", table=True)  # fmt: skip
+    craft = of_craft(table.names)
+    served = {what: [what, *craft.get(what, ())] for what in QUANTITIES}
+    log = Log(path, {name: table.channel(name, rows) for name in table.names}, served,
+              row="line", table=True)  # fmt: skip
     first = _clock_time(table.column(column.name)[0]) if table.rows else None
     if not table.rows:
         seconds = rows

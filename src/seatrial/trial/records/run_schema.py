@@ -163,6 +163,14 @@ class _Identity(_Entry):
     files: dict[str, dict[str, str]]
 
 
+class _Imported(_Entry):
+    """What a record that was imported from a log has beside that of a run."""
+
+    format: str
+    serves: dict[str, str] = Field(default_factory=dict)
+    notes: list[str] = Field(default_factory=list)
+
+
 class Manifest(_Entry):
     """``manifest.json``."""
 
@@ -184,6 +192,7 @@ class Manifest(_Entry):
     plots: list[_Plot] = Field(default_factory=list)
     events: list[Any] = Field(default_factory=list)
     faults: list[Any] = Field(default_factory=list)
+    log: _Imported | None = None
 
 
 _Limit = Annotated[tuple[str, Number, str], Strict(False)]
