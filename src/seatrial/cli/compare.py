@@ -79,7 +79,7 @@ def _compare_with_log(
     from ..trial.logs.formats import read_log
     from ..trial.logs.pairing import pairs, read_matches
     from ..trial.logs.quantities import read_columns
-    from ..trial.logs.residuals import HEADINGS, residual_of
+    from ..trial.logs.residuals import HEADINGS, resampling_notes, residual_of
     from ..trial.logs.steady_clock import steady
     from ..trial.records.run_folder import load_run
     from .show import text_table
@@ -92,12 +92,8 @@ def _compare_with_log(
     notes = [*run.notes, *log.notes, *notes]
     print_notes(notes)
     print_table(text_table(HEADINGS, [each.cells() for each in residuals]))
-    for each in residuals:
-        console.print(
-            f"{escape(each.signal)}: the {each.interpolated} is interpolated at {len(each.time)} "
-            f"instants of the other, usually {each.period:.4g} s apart",
-            soft_wrap=True,
-        )
+    for line in resampling_notes(residuals):
+        console.print(escape(line), soft_wrap=True)
     answer.result = {"notes": notes, "signals": [each.figures() for each in residuals]}
 
 

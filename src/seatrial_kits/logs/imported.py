@@ -74,9 +74,9 @@ class Imported:
 def imported(log: Log, wanted: Wanted) -> Imported:
     """Return a log, whose clock is steady, as signals of the component `COMPONENT`.
 
-    Channels keep their names and units, ``log.NAME``; the motion that the log has is ``log.position``
-    and ``log.attitude`` of a craft, in SI, positions from the first fix. A table keeps its rows.
-    Others have even rows: real channels are linear between their entries, states are held. A row
+    Channels keep their names and units, ``log.NAME``; the motion that the log has is
+    ``log.position`` and ``log.attitude`` of a craft, in SI, positions from the first fix. Angles are
+    without jumps by whole turns. A table keeps its rows. Others have even rows: real channels are linear between their entries, states are held. A row
     before the first entry of a channel, after its last one or in a gap of more than five usual
     steps has the nearest earlier value, and ``log.known.NAME`` is false.
 
@@ -103,9 +103,7 @@ def imported(log: Log, wanted: Wanted) -> Imported:
     _complete_motion(signals, units, len(time), notes)
     switches = frozenset(f"{COMPONENT}.known.{name}" for name in unknown)
     serves = _serves(log, wanted.columns, signals)
-    return Imported(
-        log, time, signals, units, switches, serves, home, (*log.notes, *notes)
-    )
+    return Imported(log, time, signals, units, switches, serves, home, (*log.notes, *notes))
 
 
 def _motion(
@@ -143,9 +141,7 @@ def _channels(log: Log, wanted: Wanted, notes: list[str]) -> dict[str, Trace]:
     if wanted.patterns:
         for pattern in wanted.patterns:
             if not any(fnmatchcase(name, pattern) for name in log.channels):
-                raise InputError(
-                    f"{log.path}: {unmatched(log.noun, pattern, list(log.channels))}"
-                )
+                raise InputError(f"{log.path}: {unmatched(log.noun, pattern, list(log.channels))}")
         names = [n for n in names if any(fnmatchcase(n, p) for p in wanted.patterns)]
     elif len(names) > MOST_CHANNELS:
         serving = {column.name.removeprefix("-") for column in defaults(log).values()} | {*units}

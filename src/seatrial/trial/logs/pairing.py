@@ -117,7 +117,7 @@ def _places(
         moved = values - values[first] + start
         found.append((signal, Trace(signal.name, "m", time, moved, False, latitude.gap)))
     notes.append(
-        f"positions are metres from the fix at {time[first]:g} s, where the run is at the same place"
+        f"positions are metres from the fix at {time[first]:g} s, where the run is then, too"
     )
     return found
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -147,6 +148,18 @@ def residual_of(signal: Trace, channel: Trace) -> Residual:
         rms_without_lag=without,
         coherence=_coherence(time, run, log),
     )
+
+
+def resampling_notes(residuals: Sequence[Residual]) -> list[str]:
+    """Return sentences that say which of run and log was interpolated where."""
+    groups: dict[str, list[str]] = {}
+    for each in residuals:
+        said = (
+            f"the {each.interpolated} is interpolated at {len(each.time)} instants of the "
+            f"{'run' if each.interpolated == 'log' else 'log'}, usually {each.period:.4g} s apart"
+        )
+        groups.setdefault(said, []).append(each.signal)
+    return [f"{', '.join(names)}: {said}" for said, names in groups.items()]
 
 
 def _span(each: Trace) -> str:

@@ -2,20 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ...links.clock_jumps import clock_jumps
 from .channels import Array, Channel, Log
 from .clock_times import date_of
-
-SET_BACK = 1.0
-"""s; a clock that goes back by more, and stays there, was set."""
-SET_FORWARD = 86400.0
-"""s; a longer time without an entry is a clock that was set: a receiver that found its date."""
-
 
 LATEST = 1e6
 """s; later times are not exact to the nanosecond, and are counted from the first entry."""
@@ -53,21 +47,6 @@ def steady(log: Log) -> Log:
     return replace(log, channels=channels, notes=tuple(notes))
 
 
-def clock_jumps(times: Array) -> tuple[NDArray[np.int64], Array]:
-    """Return where the clock of entries in the order of a file was set, and what each adds.
-
-    ``times`` (n,), s. The first array has the indices of the first entries after, the second what
-    has to be added to the times from there on so that each follows the one before by a usual step.
-    """
-    steps = np.diff(times)
-    usual = float(np.median(steps[steps > 0.0])) if np.any(steps > 0.0) else 0.0
-    following = np.append(times[2:], times[-1:]) if len(times) > 1 else times[:0]
-    # A late entry alone goes back, too; after a clock that was set the next one is behind as well.
-    stays = following[: len(steps)] < times[:-1]
-    found = np.flatnonzero(((steps < -SET_BACK) & stays) | (steps > SET_FORWARD))
-    return found + 1, np.cumsum(usual - steps[found])
-
-
 def from_zero(log: Log) -> Log:
     """Return a log whose times a simulation can have: since 1970 they become since the first."""
     ends = [(float(each.time[0]), float(each.time[-1])) for each in log.channels.values()
@@ -75,9 +54,7 @@ def from_zero(log: Log) -> Log:
     if all(abs(end) < LATEST for pair in ends for end in pair):
         return log
     first = min(begin for begin, _ in ends)
-    channels = {
-        name: replace(each, time=each.time - first) for name, each in log.channels.items()
-    }
+    channels = {name: replace(each, time=each.time - first) for name, each in log.channels.items()}
     note = f"times are from the first entry on, at {first:.6f} s"
     return replace(
         log, channels=channels, start=log.start or date_of(first), notes=(*log.notes, note)
@@ -115,9 +92,3 @@ def _at(channel: Channel, places: NDArray[np.int64]) -> Channel:
         rows=channel.rows[places],
         wrong=wrong,
     )
-
-
-def gaps(time: Array, longest: float) -> Iterator[tuple[float, float]]:
-    """Yield begin and end of the times without an entry that are longer than ``longest``, s."""
-    for place in np.flatnonzero(np.diff(time) > longest):
-        yield float(time[place]), float(time[place + 1])
