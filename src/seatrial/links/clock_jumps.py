@@ -12,23 +12,45 @@ SET_BACK = 1.0
 SET_FORWARD = 86400.0
 """s; a longer time without an entry is a clock that was set: a receiver that found its date."""
 
+_LOOKED_AT = 20
+"""Entries after a step back that are looked at."""
+
 
 def clock_jumps(times: Array) -> tuple[NDArray[np.int64], Array]:
     """Return where the clock of entries in the order of a file was set, and what each adds.
 
-    ``times`` (n,), s. The first array has the indices of the first entries after, the second what
-    has to be added to the times from there on so that each follows the one before by a usual step.
+    ``times`` (n,), s, finite. The first array has the indices of the first entries after, the
+    second what has to be added to the times from there on so that they follow the latest before by
+    a usual step. Entries that are behind while others go on, as those of a second and slower
+    device, are late and no clock that was set.
     """
     steps = np.diff(times)
-    following = np.append(times[2:], times[-1:]) if len(times) > 1 else times[:0]
-    # A late entry alone goes back, too; after a clock that was set the next one is behind as well.
-    stays = following[: len(steps)] < times[:-1]
-    found = np.flatnonzero(((steps < -SET_BACK) & stays) | (steps > SET_FORWARD))
-    return found + 1, np.cumsum(usual_step(times) - steps[found])
+    usual = usual_step(times)
+    found: list[int] = []
+    shifts: list[float] = []
+    latest, shift, done = -np.inf, 0.0, 0
+    for place in np.flatnonzero((steps < -SET_BACK) | (steps > SET_FORWARD)) + 1:
+        latest = max(latest, float(times[done:place].max()) + shift)
+        done = int(place)
+        ahead = float(times[place]) + shift - latest
+        is_set = abs(ahead) > SET_FORWARD or (
+            ahead < -SET_BACK and _stays(times[place:], latest - shift, -ahead, usual)
+        )
+        if is_set:
+            shift = latest + usual - float(times[place])
+            found.append(int(place))
+            shifts.append(shift)
+    return np.array(found, np.int64), np.array(shifts, np.float64)
+
+
+def _stays(times: Array, latest: float, behind: float, usual: float) -> bool:
+    """Say if entries stay behind the latest before, so many as a clock set back leaves there."""
+    count = min(max(int(behind / usual) if usual > 0.0 else 1, 1), _LOOKED_AT)
+    return bool(times[:count].max() < latest)
 
 
 def usual_step(times: Array) -> float:
-    """Return the median of the times between entries (n,) that rise, s; 0 without any."""
+    """Return the median time, s, from an entry (n,) to a later one within a day; 0 without any."""
     steps = np.diff(times)
-    rising = steps[steps > 0.0]
+    rising = steps[(steps > 0.0) & (steps < SET_FORWARD)]
     return float(np.median(rising)) if len(rising) else 0.0

@@ -27,16 +27,16 @@ class Recording:
 
 
 class Player(Component):
-    """Base of players: plays the entries of ``file`` from ``begin`` on, at ``speed``.
+    """Base of players: plays the entries of ``file`` from ``begin_time`` on, at ``speed``.
 
     The entry of the log's time T is played at the simulated time
 
-        start of the run + (T - first entry - begin) / speed
+        start of the run + (T - first entry - begin_time) / speed
 
-    up to ``end``, once, or again and again if ``repeat`` is on, one usual step after the last. The
-    log's own clock counts alone. A clock that was set while it recorded, back by more than 1 s or
-    forward by more than a day, goes on one usual step after the entry before; ``clock_set`` counts
-    that. Entries that come late are put in their place (``reordered``). ``skipped`` counts entries
+    up to ``end_time``, once, or again and again if ``repeat`` is on, one usual step after the last.
+    The log's own clock counts alone. A clock that was set while it recorded, back by more than 1 s
+    or forward by more than a day, goes on one usual step after the entry before; ``clock_set``
+    counts that. Entries that come late are put in their place (``reordered``). ``skipped`` counts entries
     that cannot be played. A log without times is played with ``interval`` from entry to entry.
 
     Subclasses give `read` and `put`. Raises InputError at the start for a file that cannot be read,
@@ -49,9 +49,10 @@ class Player(Component):
     }  # fmt: skip
 
     file = Parameter("", "1", "recording; empty: nothing is played", role="file")
-    begin = Parameter(0.0, "s", "time of the recording that is played first, from its first entry",
-                      min=0.0)  # fmt: skip
-    end = Parameter(0.0, "s", "time of the recording at which it ends; 0: its last entry", min=0.0)
+    begin_time = Parameter(0.0, "s", "time of the recording that is played first", min=0.0)
+    end_time = Parameter(
+        0.0, "s", "time of the recording at which it ends; 0: at its last entry", min=0.0
+    )
     speed = Parameter(1.0, "1", "seconds of the recording in a simulated second", min=1e-6)
     repeat = Parameter("off", "1", "whether it begins again at its end", choices=("off", "on"))
     interval = Parameter(
@@ -146,15 +147,16 @@ class Player(Component):
         return times[order] - times[order[0]], order, len(jumps), late
 
     def _window(self, times: Array, order: NDArray[np.int64], entries: Sequence[Any]) -> None:
-        first = int(np.searchsorted(times, self.begin))
-        last = int(np.searchsorted(times, self.end + 1e-9)) if self.end > 0.0 else len(times)
+        first = int(np.searchsorted(times, self.begin_time))
+        end = self.end_time if self.end_time > 0.0 else float(times[-1])
+        last = int(np.searchsorted(times, end, side="right"))
         if first >= last:
             raise InputError(
-                f"{self.name}: {self.file}: no entry from begin, {self.begin:g} s, to "
-                f"{self.end or times[-1]:g} s; the recording is {times[-1]:g} s long"
+                f"{self.name}: {self.file}: no entry from begin_time, {self.begin_time:g} s, to "
+                f"{end:g} s; the recording is {times[-1]:g} s long"
             )
         chosen = times[first:last]
-        self._times_ns = np.round((chosen - self.begin) / self.speed * NS).astype(np.int64)
+        self._times_ns = np.round((chosen - self.begin_time) / self.speed * NS).astype(np.int64)
         self._order, self._entries = order[first:last], entries
-        last_s = self.end if self.end > 0.0 else float(chosen[-1]) + (usual_step(chosen) or 1.0)
-        self._period_ns = max(round((last_s - self.begin) / self.speed * NS), 1)
+        after = 0.0 if self.end_time > 0.0 else usual_step(chosen) or 1.0
+        self._period_ns = max(round((end + after - self.begin_time) / self.speed * NS), 1)

@@ -74,6 +74,10 @@ _CANBOAT = re.compile(
     r"\s*(?P<time>[\dTZ:.\-+ ]+),(?P<priority>\d),(?P<pgn>\d+),(?P<source>\d+),(?P<to>\d+),"
     r"(?P<size>\d+)(?P<data>(?:,[0-9A-Fa-f]{2})+),?\s*$"
 )
+_ANALYZER = re.compile(
+    r"(?P<time>\d{4}-[\dTZ:.\-+]+) +(?P<priority>\d) +(?P<source>\d+) +(?P<to>\d+) +(?P<pgn>\d+) :"
+    r"(?P<data>(?: [0-9A-Fa-f]{2})+)\s*$"
+)
 _ACTISENSE = re.compile(
     r"\s*A(?P<time>\d{6}\.\d+)\s+(?P<source>[0-9A-Fa-f]{2})(?P<to>[0-9A-Fa-f]{2})"
     r"(?P<priority>[0-9A-Fa-f])\s+(?P<pgn>[0-9A-Fa-f]{4,5})\s+(?P<data>(?:[0-9A-Fa-f]{2})+)\s*$"
@@ -175,7 +179,7 @@ def _whole_messages(path: Path) -> frozenset[int] | None:
     with path.open(encoding="latin-1") as file:
         for line in file:
             is_whole |= line.startswith(_ALL_WHOLE)
-            parsed = _parsed(line) if "," in line or line.startswith("A") else None
+            parsed = _parsed(line) if "," in line or line[:1] in "A12" else None
             if parsed is not None and parsed.is_message and len(parsed.data) > 8:
                 found.add(pgn_of(parsed.identifier))
     return frozenset(found) if found or is_whole else None
@@ -270,6 +274,10 @@ def _canboat(match: re.Match[str]) -> _Parsed | None:
     return _message(match, data[: int(match["size"])], _moment(match["time"]))
 
 
+def _analyzer(match: re.Match[str]) -> _Parsed:
+    return _message(match, bytes.fromhex(match["data"]), _moment(match["time"]))
+
+
 def _actisense(match: re.Match[str]) -> _Parsed:
     text = match["time"]
     time = int(text[:2]) * 3600.0 + int(text[2:4]) * 60.0 + float(text[4:])
@@ -309,6 +317,7 @@ _LINES: tuple[tuple[re.Pattern[str], Callable[[re.Match[str]], _Parsed | None]],
     (_CANDUMP, _candump),
     (_YACHT_DEVICES, _yacht_devices),
     (_CANBOAT, _canboat),
+    (_ANALYZER, _analyzer),
     (_ACTISENSE, _actisense),
     (_IKONVERT, _ikonvert),
     (_PCDIN, _pcdin),

@@ -75,10 +75,11 @@ def imported(log: Log, wanted: Wanted) -> Imported:
     """Return a log, whose clock is steady, as signals of the component `COMPONENT`.
 
     Channels keep their names and units, ``log.NAME``; the motion that the log has is
-    ``log.position`` and ``log.attitude`` of a craft, in SI, positions from the first fix. Angles are
-    without jumps by whole turns. A table keeps its rows. Others have even rows: real channels are linear between their entries, states are held. A row
-    before the first entry of a channel, after its last one or in a gap of more than five usual
-    steps has the nearest earlier value, and ``log.known.NAME`` is false.
+    ``log.position`` and ``log.attitude`` of a craft, in SI, positions from the first fix. Angles
+    are without jumps by whole turns. A table keeps its rows. Others have even rows: real channels
+    are linear between their entries, states are held. A row before the first entry of a channel,
+    after its last one or in a gap of more than five usual steps has the nearest earlier value, and
+    ``log.known.NAME`` is false.
 
     Raises InputError for a channel that there is not, a unit that is none, a pattern without a
     channel, and a window without a row.

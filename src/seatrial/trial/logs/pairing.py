@@ -50,7 +50,7 @@ def pairs(
     """Return signals of a run with the channels of a log that are the same, and notes.
 
     Those of ``matches``, else the signals whose names the log has too, else the motion of the
-    run's craft that serves a quantity which the log has, by its format or by ``columns``. A latitude
+    run's craft that serves a quantity which the log has, by its format or by ``columns``. Latitude
     and longitude are metres from the first fix, which is where the run's craft is then.
 
     Raises InputError for a signal or channel that there is not, and if nothing is in both.

@@ -29,7 +29,9 @@ def steady(log: Log) -> Log:
     notes = list(log.notes)
     if len(at):
         first = f"the first before {log.row} {rows[at[0]]}, by {-shifts[0]:+.6g} s"
-        notes.append(f"the clock was set {len(at)} times, {first}: the record goes on without jump")
+        notes.append(
+            f"the clock was set {_times(len(at))}, {first}: the record goes on without jump"
+        )
     disordered = doubled = 0
     channels = {}
     for name, each in log.channels.items():
@@ -45,6 +47,10 @@ def steady(log: Log) -> Log:
     if doubled:
         notes.append(f"{doubled} entries with the time of the next of their channel are left out")
     return replace(log, channels=channels, notes=tuple(notes))
+
+
+def _times(count: int) -> str:
+    return "once" if count == 1 else f"{count} times"
 
 
 def from_zero(log: Log) -> Log:
