@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
@@ -84,10 +84,7 @@ def played(path: Path) -> str:
     before the first entry and after the last the nearest earlier value stands, and it is false.
     Raises InputError, with the file and its key, for what is no such file, and as `read_log`.
     """
-    try:
-        content, source = read_toml(path)
-    except InputError:
-        raise
+    content, source = read_toml(path)
     if "log" not in content or "play" not in content:
         raise InputError(
             f"{path}: as a component, a file that says what of a log is played is needed: the keys "
@@ -148,7 +145,7 @@ def _trace(log: Log, name: str, entry: PlayedEntry, where: str) -> Trace:
         )
     column = Column(entry.channel, entry.unit)
     try:
-        found = _found(log, column)
+        found = found_in(log, column)
         if entry.held is not None:
             gap = np.inf if entry.held else found.usual * 5.0
             found = _with(found, held=entry.held, gap=gap)
@@ -160,10 +157,14 @@ def _trace(log: Log, name: str, entry: PlayedEntry, where: str) -> Trace:
     return found
 
 
-def _found(log: Log, column: Column) -> Trace:
-    name = column.name.removeprefix("-")
-    if column.name in log.channels or name in log.channels:
-        return trace(log, name, column)
+def found_in(log: Log, column: Column) -> Trace:
+    """Return a channel of a log, or the quantity of that name that it serves; north and east, too.
+
+    Raises InputError for one that is neither.
+    """
+    name = column.name
+    if name in log.channels or name.removeprefix("-") in log.channels:
+        return trace(log, name.removeprefix("-"), column)
     if name not in QUANTITIES:
         known = [*log.channels, *defaults(log)]
         raise InputError(f"{log.path}: {unknown(log.noun, name, known)}")
@@ -208,7 +209,7 @@ def frozen(
     exact, with a row on either side of each gap. Raises InputError, with ``where``, for more than
     a table may hold.
     """
-    times = _rows(traces.values(), window)  # type: ignore[arg-type]
+    times = rows_of(traces.values(), window)
     if len(times) * len(traces) * 12 > LARGEST:
         raise InputError(
             f"{where}: {len(times)} rows of {len(traces)} outputs are too many to be played; from "
@@ -228,7 +229,8 @@ def frozen(
     return json.dumps(content, separators=(",", ":"))
 
 
-def _rows(traces: Sequence[Trace], window: tuple[float, float]) -> Array:
+def rows_of(traces: Iterable[Trace], window: tuple[float, float]) -> Array:
+    """Return the times of all entries in a window, its ends, and those on either side of gaps."""
     first, last = window
     parts = [np.array([first, last])]
     for each in traces:

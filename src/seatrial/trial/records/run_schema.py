@@ -164,10 +164,13 @@ class _Identity(_Entry):
 
 
 class _Imported(_Entry):
-    """What a record that was imported from a log has beside that of a run."""
+    """What a record that was imported from a log, or into which one played, has of the log."""
 
     format: str
     serves: dict[str, str] = Field(default_factory=dict)
+    """Signals by the quantities that they are."""
+    orders: dict[str, str] = Field(default_factory=dict)
+    """Signals of the log by the inputs that they fed."""
     notes: list[str] = Field(default_factory=list)
 
 
