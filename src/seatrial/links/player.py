@@ -37,7 +37,7 @@ class Player(Component):
     The log's own clock counts alone. A clock that was set while it recorded, back by more than 1 s
     or forward by more than a day, goes on one usual step after the entry before; ``clock_set``
     counts that. Entries that come late are put in their place (``reordered``). ``skipped`` counts
-    those that cannot be played. A log without times is played with ``interval`` from entry to entry.
+    those that cannot be played. A log without times is played with ``interval`` between entries.
 
     Subclasses give `read` and `put`. Raises InputError at the start for a file that cannot be read,
     without an entry, without times if ``interval`` is 0, and for a window without an entry.

@@ -13,6 +13,10 @@ from seatrial.trial.logs.resampling import Trace
 
 _FITTED = 20.0
 """Longest time over which the first velocity is found, s; at most a tenth of the record is."""
+_FEWEST = 6
+"""Rows of the shortest part."""
+_ROUNDING = 1e-9
+"""m and rad."""
 _PLACES: Mapping[str, tuple[str, ...]] = {
     "north": ("position_start.x", "eta_start.x"),
     "east": ("position_start.y", "eta_start.y"),
@@ -37,8 +41,8 @@ def crafts(system: System) -> list[Part]:
 def first_state(motion: Mapping[str, Trace], window: tuple[float, float]) -> dict[str, float]:
     """Return position, heading and velocity at the begin of a window, SI, as far as they are known.
 
-    Velocities are those of a polynomial of degree 2 through the first 20 s, or tenth of the record.
-    Those over ground are taken for those through the water.
+    Velocities are those of a polynomial of degree 2 through the beginning, at most 20 s or a tenth
+    of the record, as far as that follows. Those over ground are taken for those through the water.
     """
     first, last = window
     length = min(_FITTED, 0.1 * (last - first))
@@ -59,13 +63,29 @@ def first_state(motion: Mapping[str, Trace], window: tuple[float, float]) -> dic
 
 
 def _fit(each: Trace, first: float, length: float) -> tuple[float, float]:
-    """Return value and slope at ``first``."""
-    inside = (each.time >= first) & (each.time <= first + length)
+    """Return value and slope at ``first``, of the longest part that a polynomial follows.
+
+    That is a part whose residual is not larger than twice that of the shortest part: the noise.
+    """
     now = float(each.at(np.array([first]))[0][0])
-    if np.count_nonzero(inside) < 4:
+    elapsed, values = each.time - first, each.values
+    inside = (elapsed >= 0.0) & (elapsed <= length)
+    elapsed, values = elapsed[inside], values[inside]
+    counts = []
+    while len(elapsed) >> len(counts) >= _FEWEST:
+        counts.append(len(elapsed) >> len(counts))
+    if not counts:
         return now, 0.0
-    elapsed: Array = each.time[inside] - first
-    return now, float(np.polyfit(elapsed, each.values[inside], 2)[1])
+    noise = _residual(elapsed, values, counts[-1])[0]
+    found = (_residual(elapsed, values, count) for count in counts)
+    return now, next(slope for left, slope in found if left <= 2.0 * noise + _ROUNDING)
+
+
+def _residual(elapsed: Array, values: Array, count: int) -> tuple[float, float]:
+    """Return the standard deviation of the first values about their polynomial, and its slope."""
+    fitted = np.polyfit(elapsed[:count], values[:count], 2)
+    left = values[:count] - np.polyval(fitted, elapsed[:count])
+    return float(np.sqrt(np.sum(left**2) / (count - 3))), float(fitted[1])
 
 
 def settings(craft: Part, state: Mapping[str, float]) -> dict[str, float]:
