@@ -89,6 +89,7 @@ def _compare_with_log(
     log = steady(read_log(path, format_name, named.pop("time", None)))
     found, notes = pairs(run, log, matches, named)
     residuals = [residual_of(signal, channel) for signal, channel in found]
+    residuals.sort(key=lambda each: 1.0 if each.fit is None else each.fit)
     notes = [*run.notes, *log.notes, *notes]
     print_notes(notes)
     print_table(text_table(HEADINGS, [each.cells() for each in residuals]))

@@ -19,6 +19,8 @@ LONGEST_LAG = 10.0
 _LEAST = 16
 _MOST_LAGGED = 2**17
 """Rows of a comparison from which lag and coherence are estimated; more are thinned."""
+_EQUAL = 1e-9
+"""Share of the log's variance below which a residual is rounding."""
 _GAIN = 0.01
 """Share of the variance that a lag has to explain to be one."""
 
@@ -194,6 +196,8 @@ def _lag(time: Array, run: Array, log: Array, unit: str) -> tuple[float | None, 
         return None, None
     spread = _variances(run, log, most)
     best = int(np.argmin(spread))
+    if spread[most] <= _EQUAL * float(np.var(log)):
+        return None, None
     if best in (0, 2 * most) or not spread[best] < (1.0 - _GAIN) * spread[most]:
         return None, None
     low, here, high = spread[best - 1 : best + 2]
