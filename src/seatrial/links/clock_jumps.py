@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -45,7 +47,7 @@ def clock_jumps(times: Array) -> tuple[NDArray[np.int64], Array]:
 
 def _stays(times: Array, latest: float, behind: float, usual: float) -> bool:
     """Say if entries stay behind the latest before, so many as a clock set back leaves there."""
-    count = min(max(int(behind / usual) if usual > 0.0 else 1, 1), _LOOKED_AT)
+    count = min(math.ceil(behind / usual) if usual > 0.0 else 1, _LOOKED_AT)
     return bool(times[:count].max() < latest)
 
 

@@ -70,7 +70,7 @@ def import_log(
     criteria = [(text, text) for text in check or []]
     for _, text in criteria:
         parse(text)
-    outline = None if vehicle is None else load_vehicle(vehicle).outline
+    outline = None if vehicle is None else load_vehicle(vehicle).file.outline
     patterns = [each.strip() for text in channels or [] for each in text.split(",")]
     step = None if every is None else _duration("--every", every)
     if step is not None and step <= 0.0:

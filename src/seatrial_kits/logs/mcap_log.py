@@ -61,7 +61,6 @@ def _read(path: Path, _: Column | None) -> Log:
 
 def _messages(file: Any, path: Path, skipped: Counter[str]) -> Iterator[tuple[Any, Any, Any]]:
     """Yield schema, channel and message in the order of the file, also of one that is cut."""
-    from mcap.exceptions import McapError
     from mcap.records import Channel, Chunk, Message, Schema
     from mcap.stream_reader import StreamReader, breakup_chunk
 
@@ -77,10 +76,10 @@ def _messages(file: Any, path: Path, skipped: Counter[str]) -> Iterator[tuple[An
                 elif isinstance(record, Message):
                     channel = channels[record.channel_id]
                     yield schemas.get(channel.schema_id), channel, record
-    except (McapError, EOFError, KeyError, ValueError) as error:
+    except Exception as error:  # whatever mcap makes of bytes that are no recording
         if not channels:
             raise InputError(f"{path}: no MCAP file: {error or type(error).__name__}") from None
-        skipped["part is cut off or damaged: what is behind it is left out"] += 1
+        skipped["part is cut off or damaged: the messages behind it are left out"] += 1
 
 
 def _begin(time: int) -> int:

@@ -203,7 +203,8 @@ def _lag(time: Array, run: Array, log: Array, unit: str) -> tuple[float | None, 
     low, here, high = spread[best - 1 : best + 2]
     bend = low - 2.0 * here + high
     shift = 0.5 * (low - high) / bend if bend > 0.0 else 0.0
-    return (best - most + shift) * period, math.sqrt(max(here, 0.0))
+    least = here - 0.25 * (low - high) * shift
+    return float((best - most + shift) * period), math.sqrt(max(least, 0.0))
 
 
 def _variances(run: Array, log: Array, most: int) -> Array:
