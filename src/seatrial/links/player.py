@@ -144,7 +144,8 @@ class Player(Component):
         times = times + np.concatenate(([0.0], shifts))[past]
         order = np.argsort(times, kind="stable")
         late = int(np.count_nonzero(np.diff(times) < 0.0))
-        return times[order] - times[order[0]], order, len(jumps), late
+        # Times since 1970 are no finer: entries are on whole microseconds.
+        return np.round(times[order] - times[order[0]], 6), order, len(jumps), late
 
     def _window(self, times: Array, order: NDArray[np.int64], entries: Sequence[Any]) -> None:
         first = int(np.searchsorted(times, self.begin_time))

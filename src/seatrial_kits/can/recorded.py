@@ -57,7 +57,7 @@ class _Parsed(NamedTuple):
 
 
 _CANDUMP = re.compile(
-    r"\s*(?:\((?P<time>[\d.:\- ]+)\)\s+)?(?P<bus>[A-Za-z]\w*)\s+(?:[TR]X?\s+[-BE]*\s*)?"
+    r"\s*(?:\((?P<time>[\d.:\- ]+)\)\s+)?(?P<bus>[A-Za-z]\w*)\s+(?:[TR]X?\s+(?:[-BE]\s+)*)?"
     r"(?P<id>[0-9A-Fa-f]{3}(?:[0-9A-Fa-f]{5})?)"
     r"(?:#(?P<remote>R\d?)|##(?P<flags>[0-9A-Fa-f])(?P<fd>(?:[0-9A-Fa-f]{2})*)"
     r"|#(?P<data>(?:[0-9A-Fa-f]{2}\.?){0,8})|\s+\[\d+\]\s*(?P<spaced>(?:[0-9A-Fa-f]{2}(?:\s+|$)){0,64})"

@@ -71,6 +71,8 @@ def import_log(
     for _, text in criteria:
         parse(text)
     outline = None if vehicle is None else load_vehicle(vehicle).file.outline
+    if vehicle is not None and outline is None:
+        print_notes([f"the file of {vehicle} has no outline: nothing of it is drawn"])
     patterns = [each.strip() for text in channels or [] for each in text.split(",")]
     step = None if every is None else _duration("--every", every)
     if step is not None and step <= 0.0:
@@ -88,22 +90,25 @@ def import_log(
         with Watch(path.name) as watch:
             content = write_run(found, folder, name, criteria, outline,
                                 lambda share: watch.progress(share * span, span))  # fmt: skip
+        notes, rows = found.notes, len(found.time)
+        del found, log  # a long log is in memory once
         page = write_report(folder, play=play)
     except BaseException:
         shutil.rmtree(folder, ignore_errors=True)
         raise
-    print_notes(found.notes)
+    print_notes(notes)
+    units = {signal: each["unit"] for signal, each in content["signals"].items()}
     answer.result = {
         "folder": str(folder),
         "format": name,
-        "rows": len(found.time),
-        "signals": {signal: found.units[signal] for signal in found.signals},
+        "rows": rows,
+        "signals": units,
         "serves": content["log"]["serves"],
-        "notes": list(found.notes),
+        "notes": list(notes),
     }
     console.print(
-        f"{len(found.signals)} signals in {len(found.time)} rows, from {found.time[0]:g} s to "
-        f"{found.time[-1]:g} s",
+        f"{len(units)} signals in {rows} rows, from {content['start']:g} s to "
+        f"{content['stop']:g} s",
         soft_wrap=True,
     )
     passed = print_records(folder)

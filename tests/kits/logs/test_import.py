@@ -26,7 +26,7 @@ def imported(folder, *options, log="turn.csv", columns=COLUMNS):
 
 
 def test_a_log_of_a_ship_is_a_run(turn):
-    done = imported(turn, "--vehicle", "kvlcc2", "--check", "log.HDG < 400 deg")
+    done = imported(turn, "--vehicle", "otter", "--check", "log.HDG < 400 deg")
     assert done.returncode == 0, done.stdout + done.stderr
     assert "PASS  log.HDG < 400 deg" in done.stdout
     run = load_run(turn / "run")
