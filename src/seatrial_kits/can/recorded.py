@@ -132,6 +132,8 @@ def _by_python_can(path: Path, skipped: Counter[str], *, is_vector: bool) -> Ite
         reader = can.BLFReader(str(path)) if is_vector else can.LogReader(str(path))
         with reader:
             for row, entry in enumerate(reader, 1):
+                # python-can takes a frame of CAN FD without data in .asc for a remote one.
+                entry.is_remote_frame = entry.is_remote_frame and not entry.is_fd
                 frame = frame_of(entry)
                 if frame is None:
                     skipped["error frames are skipped"] += 1

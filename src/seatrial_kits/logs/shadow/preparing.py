@@ -106,6 +106,7 @@ def prepared(
     )
     write_table(traces.outputs, window, folder / TABLE, str(log.path))
     trial = _trial(log, driven, traces, window, has_pilot and bool(orders), folder)
+    trial = _without_settings(trial, [*traces.feeds])
     trial = replace(trial, rig=_fed(trial.rig, traces, folder / TABLE))
     notes: list[str] = []
     trial = _started(trial, traces, window, driven.changes, notes)
@@ -170,6 +171,12 @@ def _length(window: Window, step_ns: int) -> int:
 
 def _stop(window: Window, step_ns: int) -> str:
     return f"{_length(window, step_ns)} ns"
+
+
+def _without_settings(trial: Trial, ports: Sequence[str]) -> Trial:
+    """Return a trial whose file does not set the inputs that the log feeds."""
+    kept = {key: value for key, value in trial.file.set.items() if key not in ports}
+    return replace(trial, file=trial.file.model_copy(update={"set": kept}))
 
 
 def _fed(rig: Rig, traces: Traces, table: Path) -> Rig:

@@ -65,9 +65,8 @@ def first_state(motion: Mapping[str, Trace], window: tuple[float, float]) -> dic
 def _fit(each: Trace, first: float, length: float) -> tuple[float, float]:
     """Return value and slope at ``first``, of the longest part that a polynomial follows.
 
-    That is a part whose residual is not larger than twice that of the shortest part: the noise.
+    That is a part whose residual is not larger than one and a half times the noise.
     """
-    now = float(each.at(np.array([first]))[0][0])
     elapsed, values = each.time - first, each.values
     inside = (elapsed >= 0.0) & (elapsed <= length)
     elapsed, values = elapsed[inside], values[inside]
@@ -75,17 +74,22 @@ def _fit(each: Trace, first: float, length: float) -> tuple[float, float]:
     while len(elapsed) >> len(counts) >= _FEWEST:
         counts.append(len(elapsed) >> len(counts))
     if not counts:
-        return now, 0.0
-    noise = _residual(elapsed, values, counts[-1])[0]
-    found = (_residual(elapsed, values, count) for count in counts)
-    return now, next(slope for left, slope in found if left <= 2.0 * noise + _ROUNDING)
+        return float(each.at(np.array([first]))[0][0]), 0.0
+    most = 1.5 * _noise(each.values) + _ROUNDING
+    for count in counts:
+        fitted = np.polyfit(elapsed[:count], values[:count], 2)
+        left = values[:count] - np.polyval(fitted, elapsed[:count])
+        if np.sqrt(np.sum(left**2) / (count - 3)) <= most or count == counts[-1]:
+            break
+    return float(fitted[2]), float(fitted[1])
 
 
-def _residual(elapsed: Array, values: Array, count: int) -> tuple[float, float]:
-    """Return the standard deviation of the first values about their polynomial, and its slope."""
-    fitted = np.polyfit(elapsed[:count], values[:count], 2)
-    left = values[:count] - np.polyval(fitted, elapsed[:count])
-    return float(np.sqrt(np.sum(left**2) / (count - 3))), float(fitted[1])
+def _noise(values: Array) -> float:
+    """Return the standard deviation of white noise in values, by their second differences."""
+    if len(values) < _FEWEST:
+        return 0.0
+    # Those of white noise have six times its variance; 0.6745 is the median of |x| for N(0, 1).
+    return float(np.median(np.abs(np.diff(values, 2))) / (0.6745 * np.sqrt(6.0)))
 
 
 def settings(craft: Part, state: Mapping[str, float]) -> dict[str, float]:
