@@ -158,3 +158,25 @@ def test_a_system_is_needed(tmp_path):
     done = seatrial("shadow", "orders.csv", cwd=tmp_path)
     assert done.returncode == 2
     assert "--vehicle NAME or --rig RIG is needed" in done.stderr
+
+
+@pytest.mark.slow
+def test_what_feeds_an_input_in_the_rig_is_left_out(write, tmp_path):
+    """The order of one propeller comes from the log, not from the speed controller before it."""
+    write("log.csv", "time,share [1]\n0,0.5\n4,0.5\n")
+    write(
+        "trial.toml",
+        'rig = "vehicles/otter"\nstop = "60 s"\n[set]\n"port_esc.pulse" = "1900 us"\n'
+        '"starboard_esc.pulse" = "1900 us"\n',
+    )
+    done = seatrial(
+        "shadow", "log.csv", "--rig", "trial.toml", "--feed", "port_propeller.command=share",
+        "-o", "run", cwd=tmp_path,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stdout + done.stderr
+    run = load_run(tmp_path / "run")
+    # Steady shaft speed: the share of 103.93 rad/s, that of the vehicle's file.
+    assert run.signals["port_propeller.speed"][-1] == pytest.approx(0.5 * 103.93086427398)
+    assert run.signals["starboard_propeller.speed"][-1] == pytest.approx(103.93086427398)
+    assert ["log.share", "port_propeller.command"] in run.manifest["connections"]
+    assert ["port_esc.share", "port_propeller.command"] not in run.manifest["connections"]
