@@ -49,7 +49,6 @@ class PlayedEntry(FileModel):
 class PlayFile(FileModel):
     """A file that says what of a log is played."""
 
-    title: str = ""
     log: str
     format: str | None = None
     time: str | None = None
