@@ -71,6 +71,7 @@ LONG = {
     DOCS / "vehicles/supply-ship.md",
     HOW_TO / "new-vehicle.md",
     HOW_TO / "own-vehicle.md",
+    HOW_TO / "shadow.md",
 }
 """Pages whose examples take minutes."""
 ELSEWHERE = {

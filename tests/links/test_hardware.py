@@ -188,7 +188,7 @@ def test_nothing_else_opens_sockets_or_ports():
         "seatrial/trial/running/keeper.py",
         "seatrial/trial/running/link.py",
     }
-    files = {"seatrial_kits/nmea/nmea2000/logged_frames.py"}  # python-can reads a log, no bus
+    files = {"seatrial_kits/can/recorded.py"}  # python-can reads a log, no bus
     opened_before = {"seatrial/links/safe_state_keeper.py", "seatrial_kits/can/safe_state.py"}
     bound = {"seatrial_kits/ros2/confinement.py"}  # those of DDS, to the loopback device
     of_tests = {"seatrial_kits/mavlink/testing.py"}  # the other end, on the loopback only

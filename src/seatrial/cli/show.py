@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
@@ -62,6 +62,18 @@ def print_table(table: Table | Group) -> None:
     else:
         width = console.measure(table, options=_UNBOUNDED).maximum
         SafeConsole(highlight=False, emoji=False, width=width).print(table)
+
+
+def text_table(headings: Sequence[str], rows: Iterable[Sequence[str]]) -> Table:
+    """Return a table of texts: the first column to the left, the others to the right."""
+    table = Table(box=SIMPLE, padding=(0, 1, 0, 0))
+    for place, heading in enumerate(headings):
+        table.add_column(
+            escape(heading), justify="left" if place == 0 else "right", no_wrap=place > 0
+        )
+    for row in rows:
+        table.add_row(*map(escape, row))
+    return table
 
 
 def print_shown(shown: Shown) -> None:

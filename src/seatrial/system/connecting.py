@@ -9,7 +9,7 @@ from ..fmi.instance import Variable
 from ..model.ports import FRAMES
 from ..model.units import conversion
 from .joining import End, Group, Resolver, kind_of
-from .rig import ConnectionEntry, Scope
+from .rig import ConnectionEntry, Feed, Scope
 from .system import Connection, Joint, System
 from .values import port_scalars
 
@@ -20,10 +20,13 @@ _TARGETS = ("input", "tunable parameter")
 def connect(system: System) -> None:
     """Make the connections of a system's rig, port by port and scalar by scalar.
 
+    Those from outside its file come first, and leave out what their targets are fed by in it.
     Raises InputError for names that are none, ports that do not fit, inputs with two sources,
     terminals that have nothing in common, and inputs of a plug that are not met.
     """
     making = _Making(system, Resolver(system.parts, system.rig.top))
+    for feed in system.rig.feeds:
+        making.feed(feed)
     for scope in system.rig.top.all():
         for written, entry in scope.connections():
             making.connect(scope, written, entry)
@@ -37,6 +40,20 @@ class _Making:
     resolver: Resolver
     feeders: dict[tuple[str, str], str] = field(default_factory=dict)
     """What feeds a scalar, by component and name."""
+    outside: set[tuple[str, str]] = field(default_factory=set)
+    """Scalars that are fed from outside the rig's file."""
+
+    def feed(self, feed: Feed) -> None:
+        """Make a connection from outside the rig's file."""
+        source, target = (
+            self.resolver.anywhere(name, feed.where) for name in (feed.source, feed.target)
+        )
+        if not (source.is_port and target.is_port):
+            raise InputError(f"{feed.where}: {feed.target} is a terminal, a port is needed")
+        for end in target.members[""]:
+            one = _one(source.members[""], feed.source, feed.where)
+            self._feed(one, end, ConnectionEntry(to=feed.target), feed.where)
+        self.outside.update(self.feeders)
 
     def connect(self, scope: Scope, written: str, entry: ConnectionEntry) -> None:
         """Make one connection as written in the file of ``scope``."""
@@ -125,10 +142,17 @@ class _Making:
                 f"{where}: {source.name} has {len(sources)} scalars, "
                 f"{target.name} has {len(targets)}"
             )
+        ends = [
+            (one, other)
+            for one, other in zip(sources, targets, strict=True)
+            if (target.component, other.name) not in self.outside
+        ]
+        if not ends:
+            return
         mapping = tuple(map(tuple, entry.mapping))
         joint = Joint(source.name, target.name, entry.factor, entry.offset, mapping)
         self.system.joints.append(joint)
-        for one, other in zip(sources, targets, strict=True):
+        for one, other in ends:
             place = (target.component, other.name)
             if place in self.feeders:
                 raise InputError(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
@@ -234,12 +234,26 @@ class Placed:
 
 
 @dataclass(frozen=True)
+class Feed:
+    """A connection from outside a rig's file, in the place of the one that its target has.
+
+    Both ends are paths, at any depth, or names that rigs inside show.
+    """
+
+    source: str
+    target: str
+    where: str
+    """Who says so, for messages."""
+
+
+@dataclass(frozen=True)
 class Rig:
     """A rig file with the rigs inside it, checked as far as it can be without its FMUs."""
 
     file: RigFile
     read_from: Source
     top: Scope
+    feeds: tuple[Feed, ...] = ()
 
     @property
     def step_ns(self) -> int:
@@ -264,7 +278,21 @@ class Rig:
                 content.pop(table, None)
         file = validated(RigFile, content, self.read_from.where)
         check_rig_file(file, self.read_from.where)
-        return Rig(file, self.read_from, replace(self.top, file=file))
+        return Rig(file, self.read_from, replace(self.top, file=file), self.feeds)
+
+    def fed(self, name: str, entry: ComponentEntry, feeds: Iterable[Feed]) -> Rig:
+        """Return the rig with a further component, and with inputs that are fed from outside.
+
+        Raises InputError for a name that is there already.
+        """
+        if name in self.file.components:
+            raise InputError(
+                f"{self.read_from.where}: has a component {name!r}; what is fed into the rig has "
+                "that name, too: rename the component"
+            )
+        components = {**self.file.components, name: entry}
+        file = self.file.model_copy(update={"components": components})
+        return Rig(file, self.read_from, replace(self.top, file=file), (*self.feeds, *feeds))
 
     def isolating(self, chosen: Mapping[str, Isolated]) -> Rig:
         """Return the rig with its components ``chosen``, by path, in processes of their own or not.
@@ -272,7 +300,7 @@ class Rig:
         Raises InputError for one that cannot be.
         """
         top = _isolating(self.top, chosen)
-        return Rig(top.file, self.read_from, top)
+        return Rig(top.file, self.read_from, top, self.feeds)
 
     @cached_property
     def components(self) -> dict[str, Placed]:

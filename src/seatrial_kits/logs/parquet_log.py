@@ -76,9 +76,9 @@ def _timed(log: Log, time: Column, dates: dict[str, Array]) -> Log:
             f"{log.path}: time: {unknown('column', time.name, names)}; --columns time=NAME names it"
         )
     else:
-        seconds = (
-            series(log, "time", time).values if len(log.channels[time.name].time) else np.empty(0)
-        )
+        found = len(log.channels[time.name].time) > 0
+        # To the nanosecond: what was written as whole ones reads back so.
+        seconds = np.round(series(log, "time", time).values, 9) if found else np.empty(0)
     channels = {name: replace(each, time=seconds) for name, each in log.channels.items()}
     return replace(log, channels=channels, start=start)
 

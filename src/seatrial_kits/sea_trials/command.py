@@ -28,7 +28,7 @@ from .figures.criteria import Verdict, imo
 from .figures.result import Figures
 from .log_record import read_record
 from .page import DATA, evaluated, failed, run_folders, write_pages
-from .run_record import done_in
+from .run_record import done_in, has_component
 from .uncertainty import read_errors, with_uncertainty
 
 trials_app = typer.Typer(no_args_is_help=True, pretty_exceptions_enable=False)
@@ -134,7 +134,8 @@ def _read(
     window: Window,
     ordered: bool,
 ) -> Done:
-    if (log / MANIFEST).is_file():
+    is_run = (log / MANIFEST).is_file()
+    if is_run and (manoeuvre is None or has_component(load_run(log))):
         if manoeuvre is not None or columns or format_name is not None or window != WHOLE:
             raise InputError(
                 "--manoeuvre, --columns, --format, --from and --to are for logs: a run has its own"

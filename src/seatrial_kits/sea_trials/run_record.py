@@ -18,6 +18,11 @@ _LENGTHS = ("length", "outline", "hull_size.x", "hull_length")
 """Where the length of a craft is, the best first: parameters, and that of its outline."""
 
 
+def has_component(run: Run) -> bool:
+    """Return whether a manoeuvre's component has run: not so in imported logs, nor of a shadow."""
+    return _manoeuvre(run) is not None
+
+
 def has_manoeuvre(run: Run) -> bool:
     """Return whether a run has a manoeuvre that was begun, with a record of it."""
     name = _manoeuvre(run)

@@ -21,6 +21,7 @@ from . import circle, writers
 pytestmark = needs_kits("ardupilot", "logs", "mavlink", "nmea", "px4")
 WRITERS = {
     "csv": writers.write_csv,
+    "mcap": writers.write_mcap,
     "parquet": writers.write_parquet,
     "nmea0183": writers.write_nmea0183,
     "nmea2000": writers.write_candump,
@@ -83,7 +84,7 @@ def test_mutated(tmp_path, content, name, data):
 
 @pytest.mark.parametrize("name", WRITERS)
 def test_what_is_cut_is_read_up_to_there(tmp_path, content, name):
-    if name in ("parquet", "rosbag2"):  # their index stands at the end, or in pages
+    if name in ("mcap", "parquet", "rosbag2"):  # their index stands at the end, or in pages
         return
     path = tmp_path / "log"
     path.write_bytes(content(name))

@@ -5,6 +5,7 @@ Instruments have rates of their own: positions come some tenths of a second afte
 
 import contextlib
 import io
+import json
 import math
 import struct
 from types import SimpleNamespace
@@ -13,6 +14,7 @@ import can
 import numpy as np
 import pandas as pd
 import pynmea2
+from mcap.writer import Writer as McapWriter
 from pymavlink import mavutil
 from pymavlink.DFReader import FORMAT_TO_STRUCT, DFFormat, DFReader_binary
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
@@ -62,6 +64,36 @@ def write_csv(path):
 
 def write_parquet(path):
     frame().to_parquet(path)
+
+
+def write_mcap(path):
+    """Write positions, headings and helm as JSON, each at rates of its own, by Foxglove's writer."""
+    with path.open("wb") as file:
+        writer = McapWriter(file)
+        writer.start(profile="", library="test")
+
+        def channel(topic, **units):
+            properties = {name: {"type": "number", "unit": unit} for name, unit in units.items()}
+            schema = json.dumps({"type": "object", "properties": properties}).encode()
+            number = writer.register_schema(topic, "jsonschema", schema)
+            return writer.register_channel(f"/{topic}", "json", number)
+
+        place, compass = (
+            channel("gnss", latitude="deg", longitude="deg"),
+            channel("compass", heading="deg"),
+        )
+        rudder = channel("rudder", helm="deg")
+        slow, fast = circle(1.0, 0.3), circle(0.5)
+        for time, number, content in in_order(
+            [(t, place, {"latitude": a, "longitude": b})
+             for t, a, b in zip(slow.time, slow.latitude, slow.longitude, strict=True)],
+            [(t, compass, {"heading": math.degrees(h) % 360.0})
+             for t, h in zip(fast.time, fast.heading, strict=True)],
+            [(t, rudder, {"helm": math.degrees(d)}) for t, d in zip(fast.time, fast.helm, strict=True)],
+        ):  # fmt: skip
+            at = round((UNIX + time) * 1e9)
+            writer.add_message(number, at, json.dumps(content).encode(), at)
+        writer.finish()
 
 
 # ---------------------------------------------------------------------- NMEA

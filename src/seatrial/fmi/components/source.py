@@ -18,6 +18,7 @@ from typing import Any
 from ...errors import InputError, unknown
 from ...kits import OURS
 from ...model.component import Component
+from ...plugins import service
 from .index import component_class, components, shipped_names, title
 from .table import table_component
 from .table_file import SUFFIXES, frozen_table
@@ -152,7 +153,10 @@ def table_source(path: Path, types: Mapping[str, type] | None = None) -> TableSo
     """Return the component of a file of values over time; see `frozen_table`. Raises InputError."""
     if not path.is_file():
         raise InputError(f"there is no table {path}")
-    text = frozen_table(path, types)
+    return _table(path, frozen_table(path, types))
+
+
+def _table(path: Path, text: str) -> TableSource:
     stem = re.sub(r"\W", "_", f"table_{path.stem}", flags=re.ASCII)
     of = hashlib.sha256(text.encode()).hexdigest()[:12]
     return TableSource(
@@ -164,9 +168,12 @@ def find_source(text: str, relative_to: Path) -> ComponentSource | Path:
     """Return what ``text`` names: a component, or the path of an ``.fmu`` file.
 
     ``text`` is ``path/to/x.fmu``, ``path/to/my_boat.py:Class``, ``path/to/inputs.csv`` or
-    ``.parquet`` (all relative to the file that says it), or a name of the index. Raises InputError
-    if there is nothing there.
+    ``.parquet``, ``path/to/boat.toml``, which says what of a log is played (all relative to the
+    file that says it), or a name of the index. Raises InputError if there is nothing there.
     """
+    if text.endswith(".toml"):
+        path = (relative_to / text).resolve()
+        return _table(path, service("logs.played")(path))
     if text.endswith(SUFFIXES):
         return table_source((relative_to / text).resolve())
     if text.endswith(".fmu"):
@@ -182,7 +189,7 @@ def find_source(text: str, relative_to: Path) -> ComponentSource | Path:
     if text not in components().names():
         raise InputError(
             unknown("FMU", text, components().names())
-            + "; or give a path: x.fmu, my_boat.py:Class, x.csv"
+            + "; or give a path: x.fmu, my_boat.py:Class, x.csv, x.toml of a log"
         )
     return _indexed(text)
 

@@ -21,7 +21,8 @@ class Table(Component):
     columns of integers, switches and texts, and real ones that are held, have v0. Of several rows
     of one time the last holds from that time on, so that two of them are a jump.
 
-    Raises InputError at a time before the first row or after the last, unless ``beyond`` is hold.
+    Before the first row and after the last, ``beyond`` = hold keeps their values; repeat plays the
+    rows again and again, the first following at the time of the last. Else raises InputError there.
     """
 
     _times_ns: ClassVar[Sequence[int]] = ()
@@ -32,14 +33,17 @@ class Table(Component):
     """What the rows are from, for messages."""
 
     beyond = Parameter(
-        "error", "1", "before the first row and after the last", choices=("error", "hold")
+        "error", "1", "before the first row and after the last", choices=("error", "hold", "repeat")
     )
 
     def outputs(self, t: float) -> None:
         """Publish the values at ``t``."""
         times, now = self._times_ns, self.now_ns
         if not times[0] <= now <= times[-1]:
-            self._refuse_beyond()
+            if self.beyond == "error":
+                self._refuse_beyond()
+            if self.beyond == "repeat" and times[-1] > times[0]:
+                now = times[0] + (now - times[0]) % (times[-1] - times[0])
         row = max(0, bisect_right(times, now) - 1)
         if row + 1 == len(times) or now <= times[row]:
             found = [values[row] for values, _ in self._columns]
@@ -52,12 +56,12 @@ class Table(Component):
         self.values[-len(found) :] = found
 
     def _refuse_beyond(self) -> None:
-        if self.beyond != "hold":
-            first, last = seconds(self._times_ns[0]), seconds(self._times_ns[-1])
-            raise InputError(
-                f"{self.name}: t = {self.now!r} s is beyond the rows of {self._file}, from "
-                f'{first!r} s to {last!r} s; beyond = "hold" holds its first and last values'
-            )
+        first, last = seconds(self._times_ns[0]), seconds(self._times_ns[-1])
+        raise InputError(
+            f"{self.name}: t = {self.now!r} s is beyond the rows of {self._file}, from "
+            f'{first!r} s to {last!r} s; beyond = "hold" holds its first and last values, "repeat" '
+            "plays them again"
+        )
 
 
 @lru_cache(maxsize=64)

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ..records.run_folder import MANIFEST, SIGNALS, load_run
+from ..records.run_folder import MANIFEST, SIGNALS, Run, load_run
 from .channels import Log, channel
 from .formats import Format
 from .quantities import Column
@@ -31,8 +31,15 @@ def _read(path: Path, _: Column | None) -> Log:
         name: channel(name, run.units[name], run.time, values, rows)
         for name, values in numbers.items()
     }
-    served = of_craft(channels)
+    served = {**of_craft(channels), **_said(run, channels)}
     return Log(path / SIGNALS, channels, served, notes=run.notes, row="line", table=True)
+
+
+def _said(run: Run, names: Iterable[str]) -> dict[str, list[str]]:
+    """Return the signals that serve quantities in the record of an imported log."""
+    there = set(names)
+    said = run.manifest.get("log", {}).get("serves", {})
+    return {what: [name] for what, name in said.items() if name in there}
 
 
 def of_craft(names: Iterable[str]) -> dict[str, list[str]]:

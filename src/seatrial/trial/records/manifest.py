@@ -127,7 +127,7 @@ def _component(part: Part, feeders: Mapping[str, str], step: float) -> dict[str,
     if part.home is not None and "motion" in part.instance.terminals:
         shown["home"] = list(part.home)
     return {
-        "fmu": part.fmu,
+        "fmu": Path(part.fmu).name if Path(part.fmu).is_absolute() else part.fmu,
         "sha256": part.sha256,
         "code": part.code,
         "step": step,

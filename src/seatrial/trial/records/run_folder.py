@@ -245,7 +245,7 @@ class _Rows:
 
     def __init__(self, path: Path, width: int) -> None:
         self.path, self.width = path, width
-        self.cut = not _ends_with_newline(path)
+        self.cut = not ends_with_newline(path)
 
     def __iter__(self) -> Iterator[list[str]]:
         rows = self._parsed()
@@ -278,7 +278,8 @@ class _Rows:
                 yield reader.line_num, []
 
 
-def _ends_with_newline(path: Path) -> bool:
+def ends_with_newline(path: Path) -> bool:
+    """Return whether the last line of a text is whole, or the text is empty."""
     with path.open("rb") as file:
         file.seek(0, 2)
         if file.tell() == 0:

@@ -163,6 +163,17 @@ class _Identity(_Entry):
     files: dict[str, dict[str, str]]
 
 
+class _Imported(_Entry):
+    """What a record that was imported from a log, or into which one played, has of the log."""
+
+    format: str
+    serves: dict[str, str] = Field(default_factory=dict)
+    """Signals by the quantities that they are."""
+    orders: dict[str, str] = Field(default_factory=dict)
+    """Signals of the log by the inputs that they fed."""
+    notes: list[str] = Field(default_factory=list)
+
+
 class Manifest(_Entry):
     """``manifest.json``."""
 
@@ -184,6 +195,7 @@ class Manifest(_Entry):
     plots: list[_Plot] = Field(default_factory=list)
     events: list[Any] = Field(default_factory=list)
     faults: list[Any] = Field(default_factory=list)
+    log: _Imported | None = None
 
 
 _Limit = Annotated[tuple[str, Number, str], Strict(False)]

@@ -119,7 +119,7 @@ def _halved(trial: Trial, count: int) -> Trial:
     record = trial.file.record.model_copy(update={"every": every})
     return replace(
         trial,
-        rig=Rig(top.file, rig.read_from, top),
+        rig=Rig(top.file, rig.read_from, top, rig.feeds),
         file=trial.file.model_copy(update={"record": record, "real_time": None}),
     )
 

@@ -8,12 +8,10 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
-from rich.box import SIMPLE
 from rich.markup import escape
-from rich.table import Table
 
 from seatrial.cli.answer import answer
-from seatrial.cli.show import console, print_notes, print_table
+from seatrial.cli.show import console, print_notes, print_table, text_table
 from seatrial.errors import InputError, unknown
 from seatrial.trial.reports.report import REPORT
 from seatrial.trial.running.output import claim_folder
@@ -104,21 +102,12 @@ def _unit(craft: Craft, what: str) -> str:
 
 def _print(found: ManoeuvreStudy) -> None:
     # The page has the column of the bootstrap, for which a terminal is too narrow.
-    print_table(_table(HEADINGS[:-1], [row[:-1] for row in table_rows(found)]))
+    print_table(text_table(HEADINGS[:-1], [row[:-1] for row in table_rows(found)]))
     heads = ("", "track before", "identified", "heading before", "identified")
-    print_table(_table(heads, pass_rows(found)))
+    print_table(text_table(heads, pass_rows(found)))
     print_notes(found.notes)
     for verdict in found.verdicts:
         style, word = ("green", "PASS") if verdict.passed else ("red", "FAIL")
         console.print(
             f"[{style}]{word}[/]  {escape(verdict.name)}: {escape(verdict.detail)}", soft_wrap=True
         )
-
-
-def _table(headings: tuple[str, ...], rows: list[tuple[str, ...]]) -> Table:
-    table = Table(box=SIMPLE, padding=(0, 1, 0, 0))
-    for place, heading in enumerate(headings):
-        table.add_column(heading, justify="left" if place == 0 else "right", no_wrap=True)
-    for row in rows:
-        table.add_row(*map(escape, row))
-    return table

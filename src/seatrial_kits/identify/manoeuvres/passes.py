@@ -14,10 +14,10 @@ from seatrial.model.expressions import Vector
 from seatrial.trial.logs.channels import Log
 from seatrial.trial.logs.formats import read_log
 from seatrial.trial.logs.quantities import Column, Quantity, read_columns, series
-from seatrial.trial.records.run_folder import load_run
+from seatrial.trial.records.run_folder import MANIFEST, Run, load_run
 from seatrial_kits.sea_trials.figures.record import Record
 from seatrial_kits.sea_trials.log_record import MOTION, record_of
-from seatrial_kits.sea_trials.run_record import COMPONENT, done_in
+from seatrial_kits.sea_trials.run_record import COMPONENT, done_in, has_component
 
 YAW, SPEED = "yaw", "speed"
 """Orders to the pilot: helm, positive to turn to starboard, and speed, as shares of full ones."""
@@ -51,15 +51,20 @@ def read_pass(path: Path, columns: Sequence[str], unit: Callable[[str], str]) ->
 
     ``columns`` are texts WHAT=NAME[:UNIT] or WHAT=NUMBER; a WHAT that is no quantity of a record
     is an order, whose unit is ``unit(WHAT)``. The helm of the record over `FULL_HELM` is the order
-    `YAW` where no other one steers. A run begins at the row before its first order.
-    Raises InputError as `read_log` does, for a run without manoeuvre, and for a log without
-    orders.
+    `YAW` where no other one steers. A run of a manoeuvre begins at the row before its first order.
+    One into which a log has played (`seatrial shadow`) stands for that log, with the orders that
+    played; one that was imported, too. Raises InputError as `read_log` does, for a run that is none
+    of these, and for a log without orders.
     """
-    if path.is_dir():
-        if columns:
-            raise InputError(f"{path}: --columns is for logs: a run has its own")
-        return _of_run(path)
-    texts = [part.strip() for text in columns for part in text.split(",")]
+    played: list[str] = []
+    if (path / MANIFEST).is_file():
+        run = load_run(path)
+        if run.manifest.get("log") is None or has_component(run):
+            if columns:
+                raise InputError(f"{path}: --columns is for logs: a run has its own")
+            return _of_run(path)
+        played = _played(run, columns)
+    texts = [*played, *(part.strip() for text in columns for part in text.split(","))]
     own = [text for text in texts if text.partition("=")[0] in MOTION]
     others = [text for text in texts if text.partition("=")[0] not in MOTION]
     named = read_columns(own) if own else {}
@@ -76,6 +81,13 @@ def read_pass(path: Path, columns: Sequence[str], unit: Callable[[str], str]) ->
     if record.helm is not None and not any(name != SPEED for name in orders):
         orders[YAW] = record.helm / FULL_HELM
     return Pass(path, record, orders, notes=tuple(f"{path.name}: {note}" for note in notes))
+
+
+def _played(run: Run, columns: Sequence[str]) -> list[str]:
+    """Return the orders that a log gave in a run, as texts WHAT=NAME, but for those in columns."""
+    named = {part.partition("=")[0].strip() for text in columns for part in text.split(",")}
+    orders = run.manifest["log"].get("orders", {})
+    return [f"{port}={name}" for port, name in orders.items() if port not in named]
 
 
 def _order(log: Log, what: str, written: str, unit: str, time: Vector) -> Vector:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -14,15 +13,11 @@ import numpy as np
 
 from seatrial.errors import InputError
 from seatrial.trial.logs.channels import Array, Log, Samples
-from seatrial.trial.logs.clock_times import date_of, of_day, parsed_time, past_midnight
+from seatrial.trial.logs.clock_times import date_of, of_day, past_midnight
 
 from .codec import decode
 from .log_fields import KINDS, SENTENCE, is_valid, values_of
-
-_TAG_TIME = re.compile(r"\\(?:[^\\*]*,)?c:(\d+)")
-"""UNIX time of a TAG block (NMEA 0183 4.0, section 7)."""
-_MILLISECONDS = 1e11
-"""A UNIX time above is in ms."""
+from .log_times import stamp
 
 
 @dataclass(frozen=True)
@@ -83,26 +78,8 @@ def _lines(path: Path, skipped: Counter[str]) -> list[_Line]:
                     line.strip()
                 )
             else:
-                found.append(_Line(number, _stamp(line[: sentence.start()]), message))
+                found.append(_Line(number, stamp(line[: sentence.start()]), message))
     return found
-
-
-def _stamp(prefix: str) -> float | None:
-    """Return the time before a sentence: s since 1970, or since midnight; None if there is none."""
-    tag = _TAG_TIME.search(prefix)
-    text = tag[1] if tag else prefix.strip(" \t,;:|[]()<>")
-    if not text:
-        return None
-    try:
-        number = float(text)
-    except ValueError:
-        moment = parsed_time(text)
-        if isinstance(moment, datetime):
-            return moment.timestamp()
-        return None if moment is None else of_day(moment)
-    if not np.isfinite(number):
-        return None
-    return number / 1e3 if number > _MILLISECONDS else number
 
 
 # ---------------------------------------------------------------------- times in sentences

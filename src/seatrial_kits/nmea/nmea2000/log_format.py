@@ -7,11 +7,8 @@ from pathlib import Path
 from seatrial.trial.logs.channels import Log
 from seatrial.trial.logs.formats import Format
 from seatrial.trial.logs.quantities import Column
+from seatrial_kits.can.recorded import is_recording
 
-from .logged_frames import LINE, VECTOR
-
-_LOOKED_AT = 20
-"""Lines, of which one has to be a frame."""
 _DEFAULTS = {
     "latitude": ("129025.latitude", "129029.latitude"),
     "longitude": ("129025.longitude", "129029.longitude"),
@@ -33,9 +30,4 @@ def _read(path: Path, _: Column | None) -> Log:
     return read(path)
 
 
-def _recognises(path: Path, head: bytes) -> bool:
-    lines = head.decode("latin-1").splitlines()[:_LOOKED_AT]
-    return head.startswith(VECTOR) or any(map(LINE.match, lines))
-
-
-NMEA2000 = Format("log of an NMEA 2000 network", _recognises, _read, defaults=_DEFAULTS)
+NMEA2000 = Format("log of an NMEA 2000 network", is_recording, _read, defaults=_DEFAULTS)

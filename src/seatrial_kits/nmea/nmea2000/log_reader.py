@@ -1,4 +1,4 @@
-"""Logs of an NMEA 2000 network: candump's text, and Vector's .blf."""
+"""Logs of an NMEA 2000 network: recordings of its bus, and the text of gateways."""
 
 from __future__ import annotations
 
@@ -9,9 +9,9 @@ from pathlib import Path
 from seatrial.errors import InputError
 from seatrial.trial.logs.channels import Log, Samples
 from seatrial.trial.logs.clock_times import date_of
+from seatrial_kits.can.recorded import recorded_frames
 
-from .codec import Decoder, Message, header
-from .logged_frames import logged_frames
+from .codec import Decoder, Message, header, is_fast
 from .quantities import READERS
 
 _FIX = 129029
@@ -59,7 +59,11 @@ def read(path: Path) -> Log:
     decoder, samples = Decoder({}), Samples()
     others, begun = set(), None
     variation: list[float] = []
-    for row, time, frame in logged_frames(path, skipped):
+    for row, time, _, frame in recorded_frames(path, skipped, is_fast):
+        if not frame.extended or frame.remote or frame.fd:
+            continue
+        if time is None:
+            raise InputError(f"{path}, line {row}: no time stands before the frame: no log")
         begun = time if begun is None else begun
         pgn = header(frame)[0]
         if pgn not in READERS:
@@ -70,7 +74,7 @@ def read(path: Path) -> Log:
             else:
                 _add(samples, message, time - begun, row, variation, skipped)
     if begun is None:
-        raise InputError(f"{path}: no frame of an NMEA 2000 network was found: no candump log")
+        raise InputError(f"{path}: no frame of an NMEA 2000 network was found")
     notes = [f"{count} {what}" for what, count in skipped.items()]
     if others:
         notes.append(f"{len(others)} PGNs are not read: {', '.join(map(str, sorted(others)))}")

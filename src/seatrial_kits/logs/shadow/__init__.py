@@ -1,0 +1,1 @@
+"""A real boat's log plays into a system, and the two are compared."""

@@ -1,0 +1,232 @@
+"""The trial in which a log plays into a system."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+from seatrial.errors import InputError
+from seatrial.model.component import NS, seconds
+from seatrial.system.assembly import assemble
+from seatrial.system.flattening import load_rig
+from seatrial.system.rig import ComponentEntry, Feed, Rig
+from seatrial.system.system import System
+from seatrial.trial.criteria.criteria import parse
+from seatrial.trial.files.trial import Trial, is_trial, load_trial
+from seatrial.trial.files.trial_file import CriterionEntry
+from seatrial.trial.logs.channels import Log
+from seatrial.trial.logs.common_time import Window
+from seatrial.trial.logs.resampling import Trace
+
+from .asked import SPEED, YAW, Asked, Traces, traces_of
+from .starting import crafts, first_state, settings
+from .table import window_of, write_table
+
+COMPONENT = "log"
+TABLE = "log.csv"
+_ORDERS = {YAW: "pilot.orders.manual.yaw", SPEED: "pilot.orders.manual.surge"}
+_VEHICLE = """\
+title = "{vehicle} alone"
+step  = {step}
+[components]
+vehicle = {{ rig = {rig} }}
+"""
+_PILOT = """\
+pilot = {{ rig = {pilot}, set = {{ "{mode}" = "manual", "{armed}" = true }} }}
+[connections]
+"vehicle.sensors" = "pilot.sensors"
+"pilot.actuators" = "vehicle.actuators"
+"""
+_TRIAL = """\
+title = {title}
+rig   = {rig}
+stop  = {stop}
+[record]
+every = {every}
+"""
+
+
+@dataclass(frozen=True)
+class Driven:
+    """The system that a log plays into: a rig or a trial, or a vehicle with its pilot or alone."""
+
+    name: str | None
+    vehicle: str | None
+    changes: Mapping[str, Any]
+    """Settings of the command line, by component.port."""
+
+
+@dataclass(frozen=True, eq=False)
+class Prepared:
+    """A trial that a log plays into, and what of it plays."""
+
+    trial: Trial
+    traces: Traces
+    window: Window
+    """Of the log's time, s; its begin is the time 0 of the trial."""
+    notes: tuple[str, ...]
+
+    def played(self, name: str) -> Trace:
+        """Return an output of the log at the times of the trial."""
+        each = self.traces.outputs[name]
+        time = each.time - self.window[0]
+        return Trace(f"{COMPONENT}.{name}", each.unit, time, each.values, each.held, each.gap)
+
+
+def prepared(
+    log: Log, driven: Driven, asked: Asked, checks: Sequence[str], folder: Path
+) -> Prepared:
+    """Return the trial in which a log plays into a system; its files are written into ``folder``.
+
+    The log's outputs are those of the component `COMPONENT`. What they feed is fed by nothing else.
+    The only craft of the system starts from the log's position, heading and velocity.
+
+    Raises InputError for what does not fit in the log, the rig, the feeds and the criteria.
+    """
+    alone = driven.name is None
+    if alone and driven.vehicle is None:
+        raise InputError("shadow: --vehicle NAME or --rig RIG is needed: what the log plays into")
+    ordered = {"yaw", "helm", "speed"} & {fed.port for fed in asked.feeds}
+    direct = [fed.port for fed in asked.feeds if fed.port not in ("yaw", "helm", "speed")]
+    has_pilot = alone and (bool(ordered) or not direct)
+    traces = traces_of(log, asked, has_pilot=has_pilot)
+    orders = traces.orders()
+    if has_pilot and orders and orders.keys() != {YAW, SPEED}:
+        lacking = YAW if SPEED in orders else SPEED
+        raise InputError(
+            f"{log.path}: the order {lacking} is needed, too: --feed {lacking}=CHANNEL or "
+            f"{lacking}=NUMBER, a share of the full one"
+        )
+    fed = [*traces.feeds.values()]
+    window = window_of(
+        traces.outputs, fed or [*traces.motion.values()], asked.window, str(log.path)
+    )
+    write_table(traces.outputs, window, folder / TABLE, str(log.path))
+    trial = _trial(log, driven, traces, window, has_pilot and bool(orders), folder)
+    trial = _without_settings(trial, [*traces.feeds])
+    trial = replace(trial, rig=_fed(trial.rig, traces, folder / TABLE))
+    notes: list[str] = []
+    trial = _started(trial, traces, window, driven.changes, notes)
+    return Prepared(_with_criteria(trial, checks), traces, window, tuple(notes))
+
+
+def _trial(
+    log: Log, driven: Driven, traces: Traces, window: Window, has_pilot: bool, folder: Path
+) -> Trial:
+    changes, name = dict(driven.changes), driven.name
+    if name is not None and driven.vehicle is not None:
+        changes["choices.vehicle"] = driven.vehicle
+    if name is not None and is_trial(name):
+        step = load_trial(name, changes=changes, origin="--set").rig.step_ns
+        return load_trial(name, changes={**changes, "stop": _stop(window, step)}, origin="--set")
+    if name is None:
+        assert driven.vehicle is not None
+        rig = _vehicle_rig(driven.vehicle, has_pilot, folder)
+    else:
+        rig = str(Path(name).resolve()) if name.endswith(".toml") else name
+    chosen = {k.partition(".")[2]: v for k, v in changes.items() if k.startswith("choices.")}
+    step = load_rig(rig, choices=chosen).step_ns
+    usual = [each.usual for each in traces.outputs.values() if each.usual > 0.0]
+    every = max(round(min(usual, default=1.0) * NS / step), 1) * step
+    path = folder / f"{log.path.stem}-shadow.toml"
+    text = _TRIAL.format(
+        title=json.dumps(f"{log.path.name} plays into {driven.vehicle or name}"),
+        rig=json.dumps(rig),
+        stop=json.dumps(_stop(window, step)),
+        every=json.dumps(f"{min(every, _length(window, step))} ns"),
+    )
+    path.write_text(text, encoding="utf-8")
+    return load_trial(str(path), changes=changes, origin="--set")
+
+
+def _vehicle_rig(vehicle: str, has_pilot: bool, folder: Path) -> str:
+    """Write a rig of a vehicle, and its pilot in the mode manual; return its path."""
+    text = _VEHICLE.format(
+        vehicle=vehicle,
+        step=json.dumps(load_rig(f"vehicles/{vehicle}").file.step),
+        rig=json.dumps(f"vehicles/{vehicle}"),
+    )
+    if has_pilot:
+        text += _PILOT.format(
+            pilot=json.dumps(f"pilots/{vehicle}"), mode="guidance.mode", armed="guidance.armed"
+        )
+    path = folder / "system.toml"
+    path.write_text(text, encoding="utf-8")
+    return str(path)
+
+
+def _length(window: Window, step_ns: int) -> int:
+    """Return the length of a window in whole steps, ns. Raises InputError for less than one."""
+    steps = int((window[1] - window[0]) * NS + 1) // step_ns
+    if steps < 1:
+        raise InputError(
+            f"--from, --to: {window[1] - window[0]:g} s of the log are shorter than a step of the "
+            f"rig, {seconds(step_ns):g} s"
+        )
+    return steps * step_ns
+
+
+def _stop(window: Window, step_ns: int) -> str:
+    return f"{_length(window, step_ns)} ns"
+
+
+def _without_settings(trial: Trial, ports: Sequence[str]) -> Trial:
+    """Return a trial whose file does not set the inputs that the log feeds."""
+    kept = {key: value for key, value in trial.file.set.items() if key not in ports}
+    return replace(trial, file=trial.file.model_copy(update={"set": kept}))
+
+
+def _fed(rig: Rig, traces: Traces, table: Path) -> Rig:
+    """Return the rig with the log as a component, whose outputs feed inputs."""
+    entry = ComponentEntry(fmu=str(table), set={"beyond": "hold"})
+    feeds = [
+        Feed(f"{COMPONENT}.{name}", _ORDERS.get(port, port), f"--feed {port}")
+        for port, name in traces.feeds.items()
+    ]
+    return rig.fed(COMPONENT, entry, feeds)
+
+
+def _started(
+    trial: Trial,
+    traces: Traces,
+    window: Window,
+    changes: Mapping[str, Any],
+    notes: list[str],
+) -> Trial:
+    """Return the trial whose craft starts as the log does, unless its start was set."""
+    system: System = assemble(trial.rig, "direct", variant=trial.file.variant)
+    try:
+        found = crafts(system)
+        motion = {what: traces.outputs[name] for what, name in traces.motion.items()}
+        state = first_state(motion, window)
+        if len(found) != 1 or not state:
+            if found and state:
+                notes.append(f"{len(found)} craft: none starts from the log's first position")
+            return trial
+        values = settings(found[0], state)
+        is_set = {*changes, *trial.file.set}
+        chosen = {
+            key: value
+            for key, value in values.items()
+            if not any(key == name or key.startswith(f"{name}.") for name in is_set)
+        }
+    finally:
+        system.discard()
+    notes.append(
+        f"{found[0].name} starts from the log: "
+        + ", ".join(
+            f"{key.rpartition('_start.')[2]} = {value:.4g}" for key, value in chosen.items()
+        )
+    )
+    own = tuple((key, value, "the log") for key, value in chosen.items())
+    return replace(trial, overrides=(*own, *trial.overrides))
+
+
+def _with_criteria(trial: Trial, checks: Sequence[str]) -> Trial:
+    entries = [CriterionEntry(name=check, check=check) for check in checks]
+    file = trial.file.model_copy(update={"criteria": [*trial.file.criteria, *entries]})
+    parsed = tuple((check, parse(check)) for check in checks)
+    return replace(trial, file=file, criteria=(*trial.criteria, *parsed))
