@@ -1,0 +1,1 @@
+"""Tasks for agents that learn, and trained networks as components."""
