@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import json
 import math
 from functools import lru_cache
@@ -42,8 +43,8 @@ class Network(Component):
     """Low and high of each action, in the unit of its output; nothing: as it is."""
     _inputs_by_name: ClassVar[tuple[tuple[str, bool], ...]] = ()
     """Names of the inputs, and whether each has axes."""
-    _outputs_by_name: ClassVar[tuple[tuple[str, bool, int, int], ...]] = ()
-    """Names of the outputs, whether each has axes, and its first and last action."""
+    _outputs_by_name: ClassVar[tuple[tuple[str, bool, tuple[int, ...]], ...]] = ()
+    """Names of the outputs, whether each has axes, and the actions that it is."""
 
     def _act(self) -> None:
         """Observe, ask the network, and publish its actions."""
@@ -58,15 +59,16 @@ class Network(Component):
                 actions.append(limits[0] + share * (limits[1] - limits[0]))
             else:
                 actions.append(value)
-        for name, has_axes, first, end in self._outputs_by_name:
-            setattr(self, name, actions[first:end] if has_axes else actions[first])
+        for name, has_axes, places in self._outputs_by_name:
+            given = [actions[place] for place in places]
+            setattr(self, name, given if has_axes else given[0])
 
     def _observations(self) -> list[float]:
         """Return the observations, SI."""
-        measured = []
+        measured: list[float] = []
         for name, has_axes in self._inputs_by_name:
-            value = getattr(self, name)
-            measured += list(value) if has_axes else [value]
+            given = getattr(self, name)
+            measured = [*measured, *given] if has_axes else [*measured, given]
         found: list[float] = []
         for operation, a, b in self._program:
             match operation:
@@ -185,13 +187,9 @@ def policy_component(text: str) -> type[Network]:
         own["outside"] = Output("1", "observations outside of their range in training", type=int)
     if content["period"] is not None:
         own["period"] = Parameter(content["period"], "s", "sample period", min=1e-6)
-    ends, end = [], 0
-    for name, port in outputs.items():
-        ends.append((name, port.axes is not None, end, end + port.size))
-        end += port.size
     published = [name for name, port in own.items() if isinstance(port, Output)]
     return type(
-        content["class"],
+        f"Policy_{hashlib.sha256(text.encode()).hexdigest()[:12]}",
         (base,),
         {
             **own,
@@ -205,7 +203,10 @@ def policy_component(text: str) -> type[Network]:
             "_steps": tuple(_step(*step) for step in content["steps"]),
             "_acted": tuple(map(tuple, content["acted"])),
             "_inputs_by_name": tuple((n, port.axes is not None) for n, port in inputs.items()),
-            "_outputs_by_name": tuple(ends),
+            "_outputs_by_name": tuple(
+                (port["name"], port["axes"] is not None, tuple(port["places"]))
+                for port in content["outputs"]
+            ),
         },
     )
 

@@ -1,4 +1,4 @@
-"""Sources of FMUs: a name of the index, an ``.fmu`` file, ``my_boat.py:Class`` or a table."""
+"""Sources of FMUs: names of the index, and files: FMUs, classes in Python, tables, policies."""
 
 from __future__ import annotations
 
@@ -18,6 +18,7 @@ from typing import Any
 from ...errors import InputError, unknown
 from ...kits import OURS
 from ...model.component import Component
+from ...plugins import service
 from .index import component_class, components, shipped_names, title
 from .table import table_component
 from .table_file import SUFFIXES, frozen_table
@@ -164,11 +165,14 @@ def find_source(text: str, relative_to: Path) -> ComponentSource | Path:
     """Return what ``text`` names: a component, or the path of an ``.fmu`` file.
 
     ``text`` is ``path/to/x.fmu``, ``path/to/my_boat.py:Class``, ``path/to/inputs.csv`` or
-    ``.parquet`` (all relative to the file that says it), or a name of the index. Raises InputError
-    if there is nothing there.
+    ``.parquet``, ``path/to/policy.toml`` (all relative to the file that says it), or a name of the
+    index. Raises InputError if there is nothing there.
     """
     if text.endswith(SUFFIXES):
         return table_source((relative_to / text).resolve())
+    if text.endswith(".toml"):
+        source: ComponentSource = service("learning.policy_source")((relative_to / text).resolve())
+        return source
     if text.endswith(".fmu"):
         path = (relative_to / text).resolve()
         if not path.is_file():
@@ -182,7 +186,7 @@ def find_source(text: str, relative_to: Path) -> ComponentSource | Path:
     if text not in components().names():
         raise InputError(
             unknown("FMU", text, components().names())
-            + "; or give a path: x.fmu, my_boat.py:Class, x.csv"
+            + "; or give a path: x.fmu, my_boat.py:Class, x.csv, policy.toml"
         )
     return _indexed(text)
 
