@@ -8,7 +8,7 @@ import math
 from functools import lru_cache
 from typing import Any, ClassVar
 
-from seatrial.model.component import Component, Input, Output, Parameter
+from seatrial.model.component import Component, Input, Output, Parameter, terminal
 from seatrial.model.dense import Dense, dense
 from seatrial.model.sampled import Sampled
 
@@ -195,6 +195,7 @@ def policy_component(text: str) -> type[Network]:
             **own,
             "__doc__": content["title"] or f"Network of {content['file']}.",
             "__module__": __name__,
+            "terminals": {n: terminal(*members) for n, members in content["terminals"].items()},
             "feedthrough": dict.fromkeys(published, tuple(inputs)),
             "_program": tuple(map(tuple, content["program"])),
             "_observed": tuple(content["observed"]),

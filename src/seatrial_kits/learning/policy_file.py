@@ -62,6 +62,8 @@ class PolicyFile(FileModel):
     """Time from one action to the next; without one the outputs follow the inputs at once."""
     inputs: dict[str, str | PortEntry] = Field(min_length=1)
     outputs: dict[str, str | PortEntry] = Field(min_length=1)
+    terminals: dict[str, list[str]] = Field(default_factory=dict)
+    """Inputs and outputs that are connected together, by their names."""
     observe: list[ObserveEntry] = Field(default_factory=list)
     act: list[ActEntry] = Field(default_factory=list)
 
@@ -87,6 +89,7 @@ class _Policy:
         inputs, outputs = self._ports("inputs", file.inputs), self._ports("outputs", file.outputs)
         if twice := sorted({*file.inputs} & {*file.outputs}):
             raise InputError(f"{self.path}: {twice[0]!r} is an input and an output")
+        self._check_terminals([*file.inputs, *file.outputs])
         program, scaled, trained = self._observed(_units(inputs))
         acted, places = self._acted(_units(outputs))
         for port in outputs:
@@ -98,6 +101,7 @@ class _Policy:
                 "period": self._period(),
                 "inputs": inputs,
                 "outputs": outputs,
+                "terminals": file.terminals,
                 "program": program.operations,
                 "observed": program.observed,
                 "scaled": scaled,
@@ -147,6 +151,15 @@ class _Policy:
         for axis in entry.axes or ():
             if not axis.isidentifier() or entry.axes.count(axis) > 1:  # type: ignore[union-attr]
                 raise InputError(f"{where}.axes: {axis!r} is no identifier, or there twice")
+
+    def _check_terminals(self, ports: list[str]) -> None:
+        for name, members in self.file.terminals.items():
+            where = f"{self.path}: terminals.{name}"
+            if not name.isidentifier() or name in ports:
+                raise InputError(f"{where}: letters, digits and _ are needed, and no port's name")
+            for member in members:
+                if member not in ports or members.count(member) > 1:
+                    raise InputError(f"{where}: {unknown('port, or twice:', member, ports)}")
 
     # ------------------------------------------------------------------ observations and actions
 
