@@ -67,5 +67,5 @@ def policy_source(path: Path) -> PolicySource:
     stem = re.sub(r"\W", "_", f"policy_{path.stem}", flags=re.ASCII)
     of = hashlib.sha256(text.encode()).hexdigest()[:12]
     return PolicySource(
-        path.name, stem, "seatrial_kits.learning.policy", f"Policy_{of}", str(path), None, text
+        path.stem, stem, "seatrial_kits.learning.policy", f"Policy_{of}", str(path), None, text
     )
