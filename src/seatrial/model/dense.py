@@ -18,7 +18,7 @@ class Dense:
 
 
 def dense(layer: Dense, values: Sequence[float]) -> list[float]:
-    """Return W x + b, each element as ((b + w_1 x_1) + w_2 x_2) + ..., rounded after each operation.
+    """Return W x + b, each element as ((b + w_1 x_1) + w_2 x_2) + ... in doubles.
 
     The order is part of the result: native FMUs add in it too.
     """

@@ -24,8 +24,8 @@ _ACTIVATIONS = {
 _PASSED = ("Identity", "Flatten", "Cast", "Dropout")
 """Operators that leave the numbers of one sample as they are."""
 _SCALES = ("Add", "Sub", "Mul", "Div")
-_FOLDED = ("Identity", "Cast", "Transpose", "Reshape", "Squeeze", "Unsqueeze", "Neg", "Reciprocal")
-"""Operators of constants."""
+_FOLDED = ("Identity", "Cast", "Transpose", "Reshape", "Squeeze", "Unsqueeze", "Neg")
+"""Operators of constants. Axes of length 1 are left out where a constant is used."""
 OPERATORS = sorted({"Gemm", "MatMul", "Clip", "Constant", *_SCALES, *_PASSED, *_ACTIVATIONS})
 
 
@@ -105,7 +105,7 @@ class _Chain:
         names = [each.name for each in self.graph.output]
         if output is None and len(names) == 1:
             return str(names[0])
-        if output not in names:
+        if output is None or output not in names:
             found = "" if output is None else f", found {output!r}"
             raise InputError(
                 f"{self.path}: it has the outputs {listed(names)}; network_output is to name "
@@ -138,11 +138,13 @@ class _Chain:
             if node.op_type in ("Gemm", "MatMul") and node.input[1] in self.constants:
                 weights = self.constants[node.input[1]]
                 if weights.ndim == 2:
-                    return int(weights.shape[_attribute(node, "transB", 0)])
+                    return int(weights.shape[1 if _attribute(node, "transB", 0) else 0])
         shape = [each.dim_value for each in self.input.type.tensor_type.shape.dim]
         own = shape[1:] if len(shape) > 1 else shape
         if not own or not all(own):
-            raise InputError(f"{self.path}: input {self.input.name!r}: how many numbers is not said")
+            raise InputError(
+                f"{self.path}: input {self.input.name!r}: how many numbers is not said"
+            )
         return math.prod(own)
 
     # ------------------------------------------------------------------ constants
@@ -152,10 +154,13 @@ class _Chain:
 
         if math.prod(tensor.dims) > MOST:
             raise InputError(f"{self.path}: {called}: more than {MOST} numbers")
-        array = numpy_helper.to_array(tensor)
-        if array.dtype.kind in "fiu":
-            return finite(array.astype(np.float64), f"{self.path}: {called}")
-        return array
+        try:
+            array = numpy_helper.to_array(tensor)
+        except (ValueError, TypeError, KeyError) as error:
+            raise InputError(f"{self.path}: {called}: {error}") from None
+        if array.dtype.kind not in "fiu":
+            raise InputError(f"{self.path}: {called}: numbers are needed, found {array.dtype}")
+        return finite(array.astype(np.float64), f"{self.path}: {called}")
 
     def _constant(self, node: Any) -> Any:
         value = {each.name: each for each in node.attribute}
@@ -174,24 +179,17 @@ class _Chain:
         if node.op_type not in _FOLDED or node.domain not in ("", "ai.onnx"):
             raise InputError(f"{self._where(node)}: unknown operator of constants; {_known()}")
         values = [self.constants[name] for name in node.input if name]
-        match node.op_type:
-            case "Transpose":
-                made = np.transpose(values[0], _attribute(node, "perm", None))
-            case "Reshape" | "Squeeze" | "Unsqueeze":
-                made = values[0] if node.op_type != "Reshape" else self._reshaped(node, *values)
-            case "Neg":
-                made = -values[0]
-            case "Reciprocal":
-                made = 1.0 / values[0]
-            case _:
-                made = values[0]
-        self.constants[node.output[0]] = made
-
-    def _reshaped(self, node: Any, array: Any, shape: Any) -> Any:
+        made = values[0]
         try:
-            return array.reshape([int(each) for each in shape])
-        except ValueError as error:
+            if node.op_type == "Transpose":
+                made = np.transpose(made, _attribute(node, "perm", None))
+            elif node.op_type == "Reshape":
+                made = made.reshape([int(each) for each in values[1]])
+            elif node.op_type == "Neg":
+                made = -made
+        except (ValueError, TypeError, IndexError) as error:
             raise InputError(f"{self._where(node)}: {error}") from None
+        self.constants[node.output[0]] = made
 
     # ------------------------------------------------------------------ operators
 
@@ -205,20 +203,20 @@ class _Chain:
         elif operator in _SCALES:
             self._scale(found, node, value, where)
         elif operator == "Clip":
-            limits = [self.constants.get(name) for name in node.input[1:]] + [None, None]
-            low, high = (
-                _attribute(node, key, end) if limit is None else float(limit)
-                for key, end, limit in (
-                    ("min", -math.inf, limits[0]),
-                    ("max", math.inf, limits[1]),
-                )
-            )
+            low = self._limit(node, 1, "min", -math.inf, where)
+            high = self._limit(node, 2, "max", math.inf, where)
             found.clip(low, high, where)
         elif operator in _ACTIVATIONS:
             kind = _ACTIVATIONS[operator]
             found.activate(kind, float(_attribute(node, "alpha", ALPHAS.get(kind, 0.0))), where)
         elif operator not in _PASSED:
             raise InputError(f"{where}: unknown operator; {_known()}")
+
+    def _limit(self, node: Any, place: int, name: str, default: float, where: str) -> float:
+        """Return a limit of Clip: an input, before opset 11 an attribute."""
+        if len(node.input) > place and node.input[place]:
+            return float(self._spread(self.constants[node.input[place]], 1, where)[0])
+        return float(_attribute(node, name, default))
 
     def _dense(self, found: Steps, node: Any, value: str, where: str) -> None:
         if node.input[0] != value or node.input[1] not in self.constants:

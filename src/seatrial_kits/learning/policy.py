@@ -147,9 +147,7 @@ class Network(Component):
                 case "elu":
                     values = [each if each > 0.0 else a * math.expm1(each) for each in values]
                 case _:  # softplus
-                    values = [
-                        max(each, 0.0) + math.log1p(math.exp(-abs(each))) for each in values
-                    ]
+                    values = [max(each, 0.0) + math.log1p(math.exp(-abs(each))) for each in values]
         return values
 
 

@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping, Sequence
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from seatrial.errors import InputError
 from seatrial.fmi.components.source import ComponentSource, find_source
 from seatrial.model.component import Component
+from seatrial_kits.learning.network import read_network
 
 PLAIN = """network = "net.npz"
 period = "100 ms"
@@ -62,7 +65,17 @@ def network(sizes: Sequence[int], activations: Sequence[str], seed: int) -> dict
     """Return arrays of a random network."""
     random = np.random.default_rng(seed)
     found: dict[str, Any] = {"activations": list(activations)}
-    for number, (columns, rows) in enumerate(zip(sizes[:-1], sizes[1:], strict=True)):
+    for number, (columns, rows) in enumerate(pairwise(sizes)):
         found[f"W{number}"] = random.normal(size=(rows, columns))
         found[f"b{number}"] = random.normal(size=rows)
     return found
+
+
+def read_or_refused(path: Path) -> None:
+    """Read a network; what is wrong with it is said of its file."""
+    why = ""
+    try:
+        read_network(path, None)
+    except InputError as error:
+        why = str(error)
+    assert why.startswith(str(path) if why else "")

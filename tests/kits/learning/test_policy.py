@@ -216,7 +216,10 @@ def record(folder: Path, engine: Engine, steps: int = 40) -> list[str]:
 @pytest.mark.parametrize("period", ['period = "100 ms"\n', ""])
 def test_the_same_bytes_from_every_carrier(period: str, tmp_path: Path) -> None:
     names = ["tanh", "sigmoid", "softplus", "leaky_relu(0.3)", "elu"]
-    arrays = network((3, 20, 4, 5, 3, 2), names, 5) | {"input_low": [0.0] * 3, "input_high": [1.0] * 3}
+    arrays = network((3, 20, 4, 5, 3, 2), names, 5) | {
+        "input_low": [0.0] * 3,
+        "input_high": [1.0] * 3,
+    }
     write(tmp_path, PLAIN.replace('period = "100 ms"\n', period), arrays)
     (tmp_path / "plants.py").write_text(PLANT, "utf-8")
     (tmp_path / "rig.toml").write_text(RIG, "utf-8")
@@ -245,8 +248,13 @@ def test_c_is_the_python(
 
 @LINUX
 def test_observations_in_c_are_those_of_python(tmp_path: Path) -> None:
-    text = HEADING.replace('"max(', '"atan2(velocity.u, velocity.v) / 1 rad + min(velocity.u, velocity.v) / 1 m/s + max(')
-    build_native_fmu(source(write(tmp_path, text, SAME)), tmp_path / "a.fmu", (HERE,), None, library_here)
+    text = HEADING.replace(
+        '"max(',
+        '"atan2(velocity.u, velocity.v) / 1 rad + min(velocity.u, velocity.v) / 1 m/s + max(',
+    )
+    build_native_fmu(
+        source(write(tmp_path, text, SAME)), tmp_path / "a.fmu", (HERE,), None, library_here
+    )
 
 
 @LINUX

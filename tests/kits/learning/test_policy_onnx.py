@@ -12,7 +12,7 @@ from seatrial.errors import InputError
 from seatrial_kits.learning.network import read_network
 from seatrial_kits.learning.policy_file import frozen_policy
 
-from .policies import ports, started
+from .policies import ports, read_or_refused, started
 
 onnx: Any = pytest.importorskip("onnx", reason="networks of ONNX files need onnx")
 from onnx import TensorProto, helper, numpy_helper  # noqa: E402
@@ -29,7 +29,8 @@ def model(nodes: list[Any], constants: dict[str, Any], kind: Any = np.float32, *
     element = TensorProto.FLOAT if kind is np.float32 else TensorProto.DOUBLE
     given = helper.make_tensor_value_info("x", element, other.get("shape", ["batch", 4]))
     outputs = [
-        helper.make_tensor_value_info(name, element, None) for name in other.get("outputs", ["y"])
+        helper.make_tensor_value_info(name, element, ["batch", "n"])
+        for name in other.get("outputs", ["y"])
     ]
     graph = helper.make_graph(nodes, "net", [given], outputs, tensors)
     opset = helper.make_opsetid("", other.get("opset", 17))
@@ -74,7 +75,11 @@ MODELS = {
     "gemm-transposed": ([gemm(transB=1, alpha=0.5, beta=-2.0), then("Tanh")], {"B": B.T, "C": C}),
     "gemm-one-offset": ([gemm(), then("Relu")], {"B": B, "C": [0.5]}),
     "matmul-add": (
-        [helper.make_node("MatMul", ["x", "B"], ["m"]), helper.make_node("Add", ["C", "m"], ["h"]), then("Sigmoid")],
+        [
+            helper.make_node("MatMul", ["x", "B"], ["m"]),
+            helper.make_node("Add", ["C", "m"], ["h"]),
+            then("Sigmoid"),
+        ],
         ONE,
     ),
     "elu": ([gemm(), then("Elu", alpha=0.3)], ONE),
@@ -139,7 +144,9 @@ def test_typed_data_and_old_limits(tmp_path: Path) -> None:
 
 def test_weights_beside_the_file(tmp_path: Path) -> None:
     made = model([gemm(), then("Tanh")], ONE)
-    onnx.save(made, tmp_path / "net.onnx", save_as_external_data=True, location="w.data", size_threshold=0)
+    onnx.save(
+        made, tmp_path / "net.onnx", save_as_external_data=True, location="w.data", size_threshold=0
+    )
     agree(tmp_path / "net.onnx")
     (tmp_path / "w.data").unlink()
     with pytest.raises(InputError, match=r"net\.onnx: cannot be read: .*w\.data"):
@@ -148,10 +155,14 @@ def test_weights_beside_the_file(tmp_path: Path) -> None:
 
 def test_one_of_several_outputs(tmp_path: Path) -> None:
     value = helper.make_node("ReduceSum", ["h"], ["value"])
-    onnx.save(model([gemm(), value, then("Tanh")], ONE, outputs=["value", "y"]), tmp_path / "net.onnx")
+    onnx.save(
+        model([gemm(), value, then("Tanh")], ONE, outputs=["value", "y"]), tmp_path / "net.onnx"
+    )
     agree(tmp_path / "net.onnx", "y")
     for output in (None, "z"):
-        with pytest.raises(InputError, match=r"it has the outputs .*value.*y.*; network_output is to name one"):
+        with pytest.raises(
+            InputError, match=r"it has the outputs .*value.*y.*; network_output is to name one"
+        ):
             read_network(tmp_path / "net.onnx", output)
 
 
@@ -168,7 +179,9 @@ def test_one_of_several_outputs(tmp_path: Path) -> None:
         ([helper.make_node("Exp", ["C"], ["k"], name="e"), gemm(), then("Add", "k")], ONE, r"'e' \(Exp\): unknown operator of constants"),
     ],
 )  # fmt: skip
-def test_what_is_no_chain_of_layers(nodes: Any, constants: Any, message: str, tmp_path: Path) -> None:
+def test_what_is_no_chain_of_layers(
+    nodes: Any, constants: Any, message: str, tmp_path: Path
+) -> None:
     onnx.save(model(nodes, constants), tmp_path / "net.onnx")
     with pytest.raises(InputError, match=rf"net\.onnx: .*{message}"):
         read_network(tmp_path / "net.onnx", None)
@@ -186,10 +199,7 @@ def test_cut_and_damaged_files(tmp_path: Path) -> None:
         damaged = bytearray(content)
         damaged[random.integers(len(content))] ^= int(random.integers(1, 256))
         path.write_bytes(damaged)
-        try:
-            read_network(path, None)
-        except InputError as error:
-            assert str(error).startswith(str(path))
+        read_or_refused(path)
 
 
 def test_without_onnx_the_message_says_how_to_get_it(
