@@ -12,7 +12,6 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from seatrial.errors import InputError
-from seatrial_kits.learning.network import read_network
 from seatrial_kits.learning.policy_file import frozen_policy
 
 from .policies import LAYERS, PLAIN, read_or_refused, write
