@@ -1,10 +1,9 @@
-"""Steps of a trained network, checked, and the files that they are read from."""
+"""Steps of a trained network, checked."""
 
 from __future__ import annotations
 
 import re
 from dataclasses import dataclass, field
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -117,29 +116,3 @@ def finite(values: Array, where: str) -> Array:
         place = tuple(bad[0].tolist())
         raise InputError(f"{where}: {values[place]} at {list(place)}; finite numbers are needed")
     return values
-
-
-def read_network(path: Path, output: str | None) -> Steps:
-    """Return the network of an ``.npz`` or ``.onnx`` file.
-
-    ``output`` names the one that is meant, of an ONNX graph with several. Raises InputError naming
-    the file, and key or node, for what cannot be read or has no steps here.
-    """
-    readers = {".npz": "npz", ".onnx": "onnx"}
-    if path.suffix not in readers:
-        raise InputError(f"{path}: a network is an .npz or .onnx file")
-    try:
-        size = path.stat().st_size
-    except OSError as error:
-        raise InputError(f"{path}: {error.strerror}") from None
-    if size > LARGEST:
-        raise InputError(f"{path}: {size} bytes, at most {LARGEST} are read")
-    if path.suffix == ".onnx":
-        from .network_onnx import read_onnx
-
-        return read_onnx(path, output)
-    if output is not None:
-        raise InputError(f"{path}: has one output; network_output is for ONNX")
-    from .network_npz import read_npz
-
-    return read_npz(path)

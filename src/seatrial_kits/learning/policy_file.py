@@ -17,7 +17,7 @@ from seatrial.system.files import FileModel, read_toml, validated
 from seatrial.system.rig import duration_ns
 from seatrial.trial.criteria import expressions as ex
 
-from .network import read_network
+from .network_file import read_network
 from .observation import Program
 from .policy import RESERVED
 

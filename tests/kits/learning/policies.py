@@ -13,7 +13,7 @@ import numpy as np
 from seatrial.errors import InputError
 from seatrial.fmi.components.source import ComponentSource, find_source
 from seatrial.model.component import Component
-from seatrial_kits.learning.network import read_network
+from seatrial_kits.learning.network_file import read_network
 
 PLAIN = """network = "net.npz"
 period = "100 ms"

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from seatrial.errors import InputError
-from seatrial_kits.learning.network import read_network
+from seatrial_kits.learning.network_file import read_network
 from seatrial_kits.learning.policy_file import frozen_policy
 
 from .policies import ports, read_or_refused, started
