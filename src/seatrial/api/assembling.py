@@ -74,7 +74,7 @@ class Assembled:
 
 
 def assembled(
-    name: str | Path,
+    name: str | Path | Trial,
     settings: Mapping[str, Any] | None = None,
     *,
     seed: int | None = None,
@@ -85,15 +85,21 @@ def assembled(
 ) -> Assembled:
     """Return the system of a rig or a trial with its parameters, as `Simulation` takes them.
 
+    A trial may have been read.
     ``settings`` are those of the file ``name``: of a trial keys such as ``sea.height``, too.
     Raises InputError for bad input.
     """
+    from ..trial.files.trial import Trial, load_trial
+
     given = as_settings(settings)
-    if _is_trial(str(name)):
+    if isinstance(name, Trial) or _is_trial(str(name)):
         changes = {f"choices.{key}": value for key, value in (choices or {}).items()}
         more = {"step": as_duration(step), "variant": variant, "seed": seed}
         changes |= {key: value for key, value in more.items() if value is not None}
-        return _of_trial(str(name), {**given, **changes}, engine)
+        changes = {**given, **changes}
+        if isinstance(name, Trial):
+            return _of_trial(name.changed(changes, "set") if changes else name, engine)
+        return _of_trial(load_trial(str(name), changes=changes, origin="set"), engine)
     from ..system.assembly import assemble
     from ..system.isolation import KEY_END, isolated_in, isolating
 
@@ -127,12 +133,10 @@ def _is_trial(name: str) -> bool:
     return name in available("harness/trials") and name not in available("harness/rigs")
 
 
-def _of_trial(name: str, changes: Mapping[str, Any], engine: str) -> Assembled:
+def _of_trial(trial: Trial, engine: str) -> Assembled:
     from ..system.assembly import assemble
-    from ..trial.files.trial import load_trial
     from ..trial.running.checks import check_events, trial_faults
 
-    trial = load_trial(name, changes=changes, origin="set")
     if trial.start_ns:
         raise InputError(
             f"{trial.read_from.path}: start: {trial.file.start!r}; a simulation that a program "

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import ArrayLike, NDArray
 
+    from seatrial.trial.files.trial import Trial
     from seatrial_kits.native.surroundings import Met
 
     Floats = NDArray[np.float64]
@@ -51,7 +52,7 @@ class Batch:
 
     def __init__(
         self,
-        rig: str | Path,
+        rig: str | Path | Trial,
         count: int,
         *,
         set: Mapping[str, Any] | None = None,
@@ -79,7 +80,7 @@ class Batch:
         made = assembled(
             rig, weather_keys, variant=variant, engine="native", step=step, choices=choices
         )
-        self._made, self.system = made, made.system
+        self.made, self.system = made, made.system
         try:
             self.seeds = self._seeds(made.system.seed if seed is None else seed)
             """Of each copy."""
@@ -120,18 +121,36 @@ class Batch:
         self._refuse_closed()
         if count < 0:
             raise InputError(f"step: the count is {count}, it cannot be negative")
-        threads = min(self.threads, self.count)
-        if not self._course:
-            self._library.batch_step(self._batch, count, threads)
-            return
         before, failed = self._times()
         while count and not failed.all():
             ahead = self._course.ahead(before[~failed], count)
-            self._library.batch_step(self._batch, ahead, threads)
+            self._advance(ahead, None, None)
             count -= ahead
-            steps, failed = self._times()
-            self._course.act(self, steps, steps > before)
-            before = steps
+            before, failed = self._acted(before)
+
+    def record(self, count: int, *names: str) -> Floats:
+        """Take ``count`` communication steps, and return values after each, as `get` names them.
+
+        Shape (copies, count, elements); NaN from the step on in which a copy fails. Raises
+        InputError.
+        """
+        import numpy as np
+
+        self._refuse_closed()
+        references = self._settings.read(names)
+        blocks, (before, failed) = [np.empty((self.count, 0, len(references)))], self._times()
+        while count > 0:
+            ahead = count if failed.all() else self._course.ahead(before[~failed], count)
+            rows = np.full((self.count, ahead, len(references)), np.nan)
+            self._advance(ahead, references, rows)
+            count -= ahead
+            before, failed = self._acted(before)
+            if self._course:  # the last row has what events of its time have made of it
+                last = np.empty((self.count, len(references)))
+                self._library.batch_get(self._batch, _at(references), len(references), _at(last))
+                rows[~failed, -1] = last[~failed]
+            blocks.append(rows)
+        return np.concatenate(blocks, axis=1)
 
     @property
     def failures(self) -> dict[int, str]:
@@ -207,6 +226,12 @@ class Batch:
         self._library.batch_override(
             self._batch, _at(chosen), _at(references), len(references), None
         )
+
+    def is_built_in(self, name: str) -> bool:
+        """Say if a value is part of the program, so that `reset` refuses it. Raises InputError."""
+        from .settings import is_built_in
+
+        return any(is_built_in(self.made, each) for each in self.made.named(name))
 
     # ------------------------------------------------------------------ life
 
@@ -297,6 +322,22 @@ class Batch:
         return f"<Batch of {self.count} x {self.system.rig.read_from.name}{closed}>"
 
     # ------------------------------------------------------------------ inside
+
+    def _advance(
+        self, count: int, references: NDArray[np.uint32] | None, rows: Floats | None
+    ) -> None:
+        wanted = 0 if references is None else len(references)
+        places = [None if array is None else _at(array) for array in (references, rows)]
+        threads = min(self.threads, self.count)
+        self._library.batch_step(self._batch, count, threads, places[0], wanted, places[1])
+
+    def _acted(self, before: NDArray[np.int64]) -> tuple[NDArray[np.int64], NDArray[np.bool_]]:
+        """Let events of the copies' times happen; return the steps of each, and which failed."""
+        steps, failed = self._times()
+        if self._course:
+            self._course.act(self, steps, steps > before)
+            failed = self._times()[1]
+        return steps, failed
 
     def _start(self, chosen: NDArray[np.bool_]) -> None:
         references, values = self._settings.rows(self.seeds)

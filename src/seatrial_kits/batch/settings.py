@@ -14,14 +14,18 @@ from seatrial.api.written import as_written
 from seatrial.errors import InputError, unknown
 from seatrial.fmi.components.source import ComponentSource, find_source
 from seatrial.fmi.instance import Variable
+from seatrial.model.plant import Plant
 from seatrial.system.component_parameters import derived_seeds, seed_of
 from seatrial.system.part import Part
 from seatrial.system.system import System
 from seatrial.system.values import check_limits, from_written, port_names, port_scalars
 from seatrial_kits.native.surroundings import Met, is_surrounded, surroundings_of
-from seatrial_kits.native.tables import WEATHER_ROLES, is_built_in
+from seatrial_kits.native.tables import WEATHER_ROLES
+from seatrial_kits.native.tables import is_built_in as built_in_port
 
 Floats = NDArray[np.float64]
+_MOST_SEAS = 256
+"""That are kept for copies to come, whatever the number of copies: some hundred kB each."""
 
 
 class Settings:
@@ -205,6 +209,7 @@ class Settings:
                 for whole, rows in (self._seeded[1] | self._rows).items()
                 if whole.startswith(f"{name}.")
                 and whole.removeprefix(f"{name}.") in part.instance.variables
+                and _is_met(source, part.instance.variables[whole.removeprefix(f"{name}.")])
             }
             found[name] = [
                 self._meets(name, source, {**values, **{k: v[i] for k, v in changed.items()}})
@@ -217,7 +222,7 @@ class Settings:
     def _meets(self, name: str, source: ComponentSource, values: dict[str, Any]) -> Met | None:
         key = name, *sorted(values.items(), key=lambda item: item[0])
         if key not in self._met:
-            if len(self._met) > 4 * self._count:
+            if len(self._met) > max(_MOST_SEAS, 4 * self._count):
                 self._met.clear()  # those in use are kept by the copies
             self._met[key] = surroundings_of(source, values)
         return self._met[key]
@@ -272,13 +277,18 @@ def give_built_in(made: Assembled, settings: Mapping[str, Any]) -> dict[str, Any
     rest: dict[str, Any] = {}
     for key, value in settings.items():
         for name in made.named(key):
-            part, port = made.system.located(name, "set")[0]
-            scalars = port_scalars(part.instance.variables, port)
-            if scalars and _is_built_in(made.system, f"{part.name}.{scalars[0].name}", scalars[0]):
+            if is_built_in(made, name):
                 made.system.set(name, as_written(value), "set")
             else:
                 rest[name] = value
     return rest
+
+
+def is_built_in(made: Assembled, name: str) -> bool:
+    """Say if a port's value is part of the program. Raises InputError for a name that is none."""
+    part, port = made.system.located(name, "set")[0]
+    scalars = port_scalars(part.instance.variables, port)
+    return bool(scalars) and _is_built_in(made.system, f"{part.name}.{scalars[0].name}", scalars[0])
 
 
 def take_weather(system: System) -> dict[str, dict[str, str]]:
@@ -303,7 +313,17 @@ def _is_built_in(system: System, whole: str, scalar: Variable) -> bool:
     if not isinstance(source, ComponentSource):
         return False
     cls = source.component_class()
-    return is_built_in(cls, cls.scalar_by_name[scalar.name].port, surrounded=is_surrounded(source))
+    return built_in_port(
+        cls, cls.scalar_by_name[scalar.name].port, surrounded=is_surrounded(source)
+    )
+
+
+def _is_met(source: ComponentSource, scalar: Variable) -> bool:
+    """Say if what surrounds a plant can depend on a value: not on inputs, nor where it starts."""
+    cls = source.component_class()
+    assert issubclass(cls, Plant)
+    starts = {f"{state.name}_start" for state in cls.state_ports}
+    return scalar.causality == "parameter" and scalar.name.partition(".")[0] not in starts
 
 
 def _folder(system: System, part: Part) -> Path:

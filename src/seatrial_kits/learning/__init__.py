@@ -1,1 +1,1 @@
-"""Tasks for agents that learn, and trained networks as components."""
+"""Agents that learn in compiled copies of a system, and trained networks as components."""
