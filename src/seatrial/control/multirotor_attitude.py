@@ -89,15 +89,13 @@ class MultirotorAttitude(Sampled):
     def _moments(self) -> tuple[float, float, float]:
         own, wanted = rotation(*self.attitude), rotation(*self.attitude_wanted)
         # D = R^T R_w; half of its skew part is the axis times the sine of the angle.
-        d = [
-            [sum(own[k][i] * wanted[k][j] for k in range(3)) for j in range(3)] for i in range(3)
-        ]
+        d = [[sum(own[k][i] * wanted[k][j] for k in range(3)) for j in range(3)] for i in range(3)]
         error = ((d[2][1] - d[1][2]) / 2, (d[0][2] - d[2][0]) / 2, (d[1][0] - d[0][1]) / 2)
-        I, w = self.inertia, self.rates
+        inertia, w = self.inertia, self.rates
         speeds = (self.bandwidth, self.bandwidth, self.yaw_bandwidth)
-        spun = cross(w, [i * r for i, r in zip(I, w, strict=True)])
+        spun = cross(w, [i * r for i, r in zip(inertia, w, strict=True)])
         L, M, N = (
             i * (n * n * e - 2.0 * self.damping * n * r) + s
-            for i, n, e, r, s in zip(I, speeds, error, w, spun, strict=True)
+            for i, n, e, r, s in zip(inertia, speeds, error, w, spun, strict=True)
         )
         return L, M, N

@@ -26,8 +26,8 @@ class RelativePose(Sensor):
 
     Each component of b has white noise of ``noise_floor`` + ``noise_share`` |b| + ``exposure`` |w|
     |b|: resolution, which falls with distance, and blur while the drone turns with w. The
-    drone's own error of attitude, constant in a run, ``attitude_error`` (standard deviation of
-    roll and of pitch, drawn by the seed), turns the line of sight. With a the attitude, e that error:
+    drone's own error of attitude, constant in a run, turns the line of sight: ``attitude_error``
+    is the standard deviation of its roll and pitch. With a the attitude and e that error:
 
         offset = R(a) (b + e x b + noise)     m, {n}, from the CG to the pad
 

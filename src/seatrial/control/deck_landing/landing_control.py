@@ -25,11 +25,11 @@ MODES = (
 class DeckLandingControl(Windows, DeckEstimate, Sampled):
     """Thrust and attitude for a landing on a deck that a camera sees and a craft reports.
 
-    **States** (``mode``): 1 take-off, where ``start`` is "deck": to ``hover_height``; 2 transit,
-    along ``waypoint`` (north, east from the start) and back, where it is not 0; 3 track: over the
-    pad, at ``hover_height`` of the feet over its mean, until ``settle`` s have passed within 0.3 m of
-    it; 4 wait for a window (predictive alone); 5 descend; 6 landed, motors off, ``legs_time``
-    after the legs carry a tenth of the weight; 7 go around: up to ``hover_height``, then 3; 8 abort:
+    **States** (``mode``): 1 take-off, where ``starts_from`` is "deck", to ``hover_height``; 2 transit,
+    to ``waypoint`` (north, east from the start) and back, where it is not 0; 3 track: over the
+    pad, ``hover_height`` of the feet over its mean, until it was within 0.3 m for ``settle`` s;
+    4 wait for a window (predictive alone); 5 descend; 6 landed, motors off, ``legs_time`` after
+    the legs carry a tenth of the weight; 7 go around: up to ``hover_height``, then 3; 8 abort:
     after ``attempts`` of these it holds ``hover_height`` where it is. 0 is before the start.
 
     **Horizontal** (`laws.below`): a = 3.0 e + 3.4 (v_deck - v) + 1.5 int e + a_deck 0.2 s ahead.
@@ -50,7 +50,7 @@ class DeckLandingControl(Windows, DeckEstimate, Sampled):
     )
     mass = Parameter(10.0, "kg", "mass of the drone", min=1e-3)
     feet = Parameter((0.2, 0.2, 0.25), "m", "feet from the CG", axes="xyz", min=0.0)
-    begin = Parameter("hover", "1", "where it starts", choices=("hover", "deck"))
+    starts_from = Parameter("hover", "1", "where it starts", choices=("hover", "deck"))
     hover_height = Parameter(2.0, "m", "height of the feet over the pad's mean", min=0.0)
     waypoint = Parameter(0.0, "m", "where to fly before landing, from the start", axes=NED[:2])
     settle = Parameter(4.0, "s", "time over the pad before the descent", min=0.0)
@@ -105,7 +105,7 @@ class DeckLandingControl(Windows, DeckEstimate, Sampled):
         own = [float(v) for v in to_ned(self.attitude, self.velocity)]
         if not self._home:
             self._home = [*self.position]
-            self._change(TAKE_OFF if self.begin == "deck" else self._after_start(), t)
+            self._change(TAKE_OFF if self.starts_from == "deck" else self._after_start(), t)
         height = float(deck[0][2]) - self.position[2] - self.feet[2]
         error = [float(deck[0][i]) - self.position[i] for i in range(2)]
         off = math.hypot(*error)
@@ -211,7 +211,7 @@ class DeckLandingControl(Windows, DeckEstimate, Sampled):
     def _down(self, t: float, deck: Array, own: Sequence[float], height: float) -> float:
         if self._mode != DESCEND:
             mean = self.mean_down()
-            over = self._home[2] + self.feet[2] if self.begin == "deck" else None
+            over = self._home[2] + self.feet[2] if self.starts_from == "deck" else None
             level = mean if mean is not None else over
             if level is None:
                 return laws.rising(self._home[2] - self.position[2], own[2])
@@ -224,4 +224,3 @@ class DeckLandingControl(Windows, DeckEstimate, Sampled):
             return self.meets(t, self.position[2] + self.feet[2], own[2], left)
         wanted = float(deck[1][2]) + laws.sinking(height)
         return laws.down(wanted, own[2], float(deck[2][2]))
-

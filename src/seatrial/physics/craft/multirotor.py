@@ -136,6 +136,7 @@ class Multirotor(Plant):
     power = Output("W", "electrical power of the motors")
     place = Output("m", "CG of the drone from the craft's origin, the craft's axes", axes="xyz")
     slip = Output("m/s", "velocity of the middle of the feet along the deck", axes="xy")
+    legs_load = Output("N", "of all feet along the deck's normal")
     legs_down = Output("1", "how many feet press on the deck")
 
     terminals: ClassVar = {
@@ -192,13 +193,17 @@ class Multirotor(Plant):
             "power": ca.fmax(ca.dot(rotors.torques, x.rotor_speed), 0) / p.drive_efficiency,
             "place": place,
             "slip": legs.slip[:2],
+            "legs_load": legs.total,
             "legs_down": sum(normal > 0 for normal in legs.normals),
         }
 
 
 class _Rotors:
-    """What four rotors give: ``thrust``, N; ``moment``, N.m, on the body; ``momentum``, N.m.s, about
-    its z; ``torques`` of each shaft, ``torque`` of each on the body, N.m; ``spin_up``, rad/s2."""
+    """Loads of four rotors on the body: ``thrust``, N, and ``moment``, N.m.
+
+    ``momentum``, N.m.s, is about its z; ``torques`` of each shaft, ``torque`` of each on the body,
+    N.m; ``spin_up``, rad/s2.
+    """
 
     def __init__(self, x: Any, u: Any, p: Any, over: Any, deck: Any, place: Any, air: Any) -> None:
         k_thrust = p.thrust_coefficient * p.density * p.rotor_diameter**4 / (4 * math.pi**2)

@@ -63,9 +63,7 @@ class PrescribedDeck(Noise, Component):
         if self.direction_by == "value":
             direction = self.wave_direction
         period = self.wave_period or period_of(self.wave_height) or 1.0
-        self._raft = drawn(
-            self.size, self.wave_height, period, direction, self.pad_height, draw
-        )
+        self._raft = drawn(self.size, self.wave_height, period, direction, self.pad_height, draw)
 
     def outputs(self, t: float) -> None:
         """Publish the motion at ``t``."""

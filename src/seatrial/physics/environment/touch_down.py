@@ -21,9 +21,9 @@ class TouchDown(Component):
         touch_error = sqrt(f_x^2 + f_y^2)      touch_speed = v_z, into the deck
         touch_aside = sqrt(v_x^2 + v_y^2)      touch_tilt  = angle between the z axes
 
-    It lands if these are within ``radius``, ``speed_limit``, ``aside_limit`` and ``tilt_limit``, and
-    if at ``settled_after`` from contact it is within ``rest_tilt`` of the deck, has moved along it by
-    ``rest_move`` at most and stands on the deck with a leg. ``landed`` is 1 from then on,
+    It lands if these are within ``radius``, ``speed_limit``, ``aside_limit`` and ``tilt_limit``,
+    and if ``settled_after`` contact it is within ``rest_tilt`` of the deck, has moved along it
+    by ``rest_move`` at most and stands on the deck with a leg. ``landed`` is 1 from then on,
     -1 once it did not, 0 while open; ``failure`` is the first limit that it missed: 1 no contact by
     ``time_limit``, 2 radius, 3 speed, 4 speed aside, 5 tilt, 6 rest. ``energy`` is the
     integral of ``power`` up to contact, J; ``touch_time`` its time, s, ``peak_load`` the largest

@@ -69,7 +69,11 @@ def period_of(height: float) -> float:
 
 
 def drawn(
-    size: Sequence[float], height: float, period: float, direction: float, pad: float,
+    size: Sequence[float],
+    height: float,
+    period: float,
+    direction: float,
+    pad: float,
     draw: np.random.Generator,
 ) -> Follower:
     """Return a raft of ``size`` (length, breadth, draught), m, in a JONSWAP sea, gamma 3.3.
