@@ -37,7 +37,7 @@ class MultirotorAttitude(Sampled):
         "rates": [0.1, 0.2, -0.1],
     }
 
-    period = Parameter(0.002, "s", "sample period", min=1e-6)
+    period = Parameter(0.004, "s", "sample period", min=1e-6)
     inertia = Parameter((0.25, 0.25, 0.4), "kg.m2", "principal moments", axes="xyz", min=1e-6)
     density = Parameter(1.225, "kg/m3", "density of the air", min=1e-3)
     rotor_diameter = Parameter(0.40, "m", "diameter of a rotor", min=1e-3)

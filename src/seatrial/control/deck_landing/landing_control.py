@@ -27,7 +27,7 @@ class DeckLandingControl(Windows, DeckEstimate, Sampled):
 
     **States** (``mode``): 1 take-off, where ``starts_from`` is "deck", to ``hover_height``; 2 transit,
     to ``waypoint`` (north, east from the start) and back, where it is not 0; 3 track: over the
-    pad, ``hover_height`` of the feet over its mean, until it was within 0.3 m for ``settle`` s;
+    pad, ``hover_height`` of the feet over its mean, for ``settle`` s and until it is within 0.3 m;
     4 wait for a window (predictive alone); 5 descend; 6 landed, motors off, ``legs_time`` after
     the legs carry a tenth of the weight; 7 go around: up to ``hover_height``, then 3; 8 abort:
     after ``attempts`` of these it holds ``hover_height`` where it is. 0 is before the start.
@@ -81,7 +81,7 @@ class DeckLandingControl(Windows, DeckEstimate, Sampled):
     def reset(self, t: float) -> None:
         """Start in the air, or with the motors off on the deck."""
         self._mode = OFF
-        self._since = self._clear = self._passed = t
+        self._since = t
         self._home: list[float] = []
         self._integral = (0.0, 0.0)
         self._loaded = -1.0
@@ -121,7 +121,7 @@ class DeckLandingControl(Windows, DeckEstimate, Sampled):
     # ------------------------------------------------------------------ states
 
     def _change(self, mode: int, t: float) -> None:
-        self._mode, self._since, self._clear = mode, t, t
+        self._mode, self._since = mode, t
         if mode not in (WAIT, DESCEND):
             self.forget_window()
 
@@ -140,8 +140,7 @@ class DeckLandingControl(Windows, DeckEstimate, Sampled):
             if self._out > 1:
                 self._change(TRACK, t)
         elif mode == TRACK:
-            self._clear = t if off > 0.3 or lost > 0.5 else self._clear
-            if t - self._clear >= self.settle:
+            if t - self._since >= self.settle and off < 0.3 and lost < 0.5:
                 self._change(WAIT if self.control == "predictive" else DESCEND, t)
         elif mode == WAIT and lost > 1.0:
             self._change(TRACK, t)
