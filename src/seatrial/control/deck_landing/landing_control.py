@@ -25,7 +25,7 @@ MODES = (
 class DeckLandingControl(Windows, DeckEstimate, Sampled):
     """Thrust and attitude for a landing on a deck that a camera sees and a craft reports.
 
-    **States** (``mode``): 1 take-off, where ``starts_from`` is "deck", to ``hover_height``; 2 transit,
+    **States** (``mode``): 1 take-off, where ``starts_from`` is "deck"; 2 transit,
     to ``waypoint`` (north, east from the start) and back, where it is not 0; 3 track: over the
     pad, ``hover_height`` of the feet over its mean, for ``settle`` s and until it is within 0.3 m;
     4 wait for a window (predictive alone); 5 descend; 6 landed, motors off, ``legs_time`` after
@@ -64,8 +64,8 @@ class DeckLandingControl(Windows, DeckEstimate, Sampled):
     motors = Output("1", "whether the motors turn", type=bool)
     mode = Output("1", "state of the autopilot: 3 track, 5 descend, 6 landed ...")
     go_arounds = Output("1", "how often it went around")
-    height = Output("m", "estimated height of the feet over the pad")
-    error = Output("m", "estimated horizontal error")
+    height = Output("m", "estimated height of the feet over the pad, 0 before it is seen")
+    error = Output("m", "estimated horizontal error, 0 before the pad is seen")
     window = Output("s", "time of the touch-down that it has committed to, 0 for none")
 
     terminals: ClassVar = {
@@ -110,13 +110,14 @@ class DeckLandingControl(Windows, DeckEstimate, Sampled):
         error = [float(deck[0][i]) - self.position[i] for i in range(2)]
         off = math.hypot(*error)
         self._next_mode(t, height, off)
+        shown = [height, off] if len(self._x) else [0.0, 0.0]
         if self._mode == LANDED:
-            self._held = [0.0, [0.0, 0.0, self._heading()], False, height, off]
+            self._held = [0.0, [0.0, 0.0, self._heading()], False, *shown]
             return
         aside = self._aside(t, deck, own, error, height)
         down = self._down(t, deck, own, height)
         thrust, attitude = laws.thrust_for((*aside, down), self.mass, self._heading())
-        self._held = [thrust, [*attitude], True, height, off]
+        self._held = [thrust, [*attitude], True, *shown]
 
     # ------------------------------------------------------------------ states
 
