@@ -10,12 +10,15 @@ from ...model.component import Component, Input, Output, Parameter, terminal
 from ..craft.kinematics import Vector3, cross, rotation, to_body, to_ned
 
 _EULER = ("phi", "theta", "psi")
+_AIRBORNE = 0.1
+"""Height of the feet from which a contact is a landing, m."""
 
 
 class TouchDown(Component):
     """First contact of a drone's legs with a deck, held from then on, and whether it landed.
 
-    At the first instant at which ``legs_down`` is above 0, with the middle of the feet f from
+    At the first instant at which ``legs_down`` is above 0, after the feet were 0.1 m over the deck
+    (a drone that takes off from it has not landed), with the middle of the feet f from
     the pad in the deck's axes, and its velocity v over the deck:
 
         touch_error = sqrt(f_x^2 + f_y^2)      touch_speed = v_z, into the deck
@@ -91,15 +94,16 @@ class TouchDown(Component):
         self._at, self._figures = -1.0, [0.0] * 5
         self._place = [0.0, 0.0]
         self._landed = self._failure = self._energy = self._peak = 0.0
-        self._began = t
+        self._began, self._flew = t, False
 
     def step(self, t: float, h: float) -> None:
         """Latch the first contact, and decide when it has come to rest."""
         foot, speed, tilt = self._over_deck()
         self._peak = max(self._peak, self.load)
+        self._flew = self._flew or foot[2] < -_AIRBORNE
         if self._at < 0.0:
             self._energy += self.power * h
-            if self.legs_down > 0.0:
+            if self._flew and self.legs_down > 0.0:
                 self._touch(t, foot, speed, tilt)
             elif t - self._began >= self.time_limit and not self._landed:
                 self._landed, self._failure = -1.0, 1.0
