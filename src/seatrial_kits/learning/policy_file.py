@@ -129,10 +129,10 @@ class _Policy:
             entry = PortEntry(unit=written) if isinstance(written, str) else written
             if not name.isidentifier() or keyword.iskeyword(name) or name.startswith("_"):
                 raise InputError(f"{where}: a name has letters, digits and _, and a letter first")
-            if name in RESERVED or name in ex.functions() or _is_unit(name):
+            if has_meaning(name):
                 raise InputError(
-                    f"{where}: that name means something else (a unit, a function, an attribute of "
-                    "components): rename it"
+                    f"{where}: that name means something else (a unit, an attribute of components): "
+                    "rename it"
                 )
             self._check_port(entry, where)
             found.append({"name": name, **entry.model_dump()})
@@ -249,11 +249,12 @@ def _units(ports: list[dict[str, Any]]) -> dict[str, str]:
     return found
 
 
-def _is_unit(name: str) -> bool:
+def has_meaning(name: str) -> bool:
+    """Return whether a name means something else, so that no port can have it."""
     try:
         unit(name)
     except InputError:
-        return False
+        return name in RESERVED
     return True
 
 
