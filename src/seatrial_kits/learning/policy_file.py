@@ -15,7 +15,6 @@ from seatrial.model.ports import FRAMES
 from seatrial.model.units import Unit, quantity, unit
 from seatrial.system.files import FileModel, read_toml, validated
 from seatrial.system.rig import duration_ns
-from seatrial.trial.criteria import expressions as ex
 
 from .network_file import read_network
 from .observation import Program
@@ -131,8 +130,8 @@ class _Policy:
                 raise InputError(f"{where}: a name has letters, digits and _, and a letter first")
             if has_meaning(name):
                 raise InputError(
-                    f"{where}: that name means something else (a unit, an attribute of components): "
-                    "rename it"
+                    f"{where}: that name means something else (a unit, an attribute of "
+                    "components): rename it"
                 )
             self._check_port(entry, where)
             found.append({"name": name, **entry.model_dump()})
