@@ -74,6 +74,8 @@ def frozen_policy(path: Path) -> str:
     them.
     """
     content, _ = read_toml(path)
+    if "components" in content:
+        raise InputError(f'{path}: it is a rig, no policy: rig = "..." puts it in place of fmu')
     return _Policy(path, validated(PolicyFile, content, path)).text()
 
 
