@@ -15,7 +15,6 @@ from seatrial.model.ports import FRAMES
 from seatrial.model.units import Unit, quantity, unit
 from seatrial.system.files import FileModel, read_toml, validated
 from seatrial.system.rig import duration_ns
-from seatrial.trial.criteria import expressions as ex
 
 from .network_file import read_network
 from .observation import Program
@@ -75,6 +74,8 @@ def frozen_policy(path: Path) -> str:
     them.
     """
     content, _ = read_toml(path)
+    if "components" in content:
+        raise InputError(f'{path}: it is a rig, no policy: rig = "..." puts it in place of fmu')
     return _Policy(path, validated(PolicyFile, content, path)).text()
 
 
@@ -129,9 +130,9 @@ class _Policy:
             entry = PortEntry(unit=written) if isinstance(written, str) else written
             if not name.isidentifier() or keyword.iskeyword(name) or name.startswith("_"):
                 raise InputError(f"{where}: a name has letters, digits and _, and a letter first")
-            if name in RESERVED or name in ex.functions() or _is_unit(name):
+            if has_meaning(name):
                 raise InputError(
-                    f"{where}: that name means something else (a unit, a function, an attribute of "
+                    f"{where}: that name means something else (a unit, an attribute of "
                     "components): rename it"
                 )
             self._check_port(entry, where)
@@ -249,11 +250,12 @@ def _units(ports: list[dict[str, Any]]) -> dict[str, str]:
     return found
 
 
-def _is_unit(name: str) -> bool:
+def has_meaning(name: str) -> bool:
+    """Return whether a name means something else, so that no port can have it."""
     try:
         unit(name)
     except InputError:
-        return False
+        return name in RESERVED
     return True
 
 

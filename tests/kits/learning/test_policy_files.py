@@ -151,6 +151,11 @@ def test_elements_with_mistakes(
         frozen_policy(write(tmp_path, text.replace(old, new)))
 
 
+def test_a_rig_is_no_policy(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=r"policy\.toml: it is a rig, no policy: rig = "):
+        frozen_policy(write(tmp_path, 'step = "1 s"\n[components]\n'))
+
+
 def test_ranges_of_training_stand_in_one_place(tmp_path: Path) -> None:
     arrays = LAYERS | {"input_low": [0.0] * 3, "input_high": [1.0] * 3}
     text = OBSERVE.replace('"x.b"', '"x.b"\ntrained = [0, 1]')
