@@ -14,6 +14,12 @@ from .shipped import available
 __all__ = ["make", "make_vec", "stable_baselines", "tasks", "write_policy"]
 
 
+make: Any
+make_vec: Any
+stable_baselines: Any
+write_policy: Any
+
+
 def __getattr__(name: str) -> Any:
     if name in __all__:
         return service(f"learning.{name}")
