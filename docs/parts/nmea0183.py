@@ -35,6 +35,8 @@ _KNOWN = Readings(
     sky=sky(_TIME.timestamp(), -22.862, -43.223),
     leg=leg_status(3, (0.0, 0.0), (926.0, 0.0), 20.0, (0.0, 92.6), (1.0, 0.5)),
     waypoints=((-22.862, -43.224), (-22.854, -43.224)),
+    water_distance=1389.0,
+    engine_speeds=(120.0,),
 )
 _TALKERS = {"HDT": "HE", "HDG": "HC", "ROT": "TI", "MWV-R": "WI", "MWV-T": "WI", "XDR": "II"} | {
     "VHW": "VW",
@@ -44,6 +46,15 @@ _TALKERS = {"HDT": "HE", "HDG": "HC", "ROT": "TI", "MWV-R": "WI", "MWV-T": "WI",
     "RSA": "AG",
     "XTE": "AG",
     "RMB": "AG",
+    "APB": "AG",
+    "BWC": "AG",
+    "BOD": "AG",
+    "HDM": "HC",
+    "MWD": "WI",
+    "GNS": "GN",
+    "VLW": "VW",
+    "RPM": "ER",
+    "VDR": "II",
 }
 
 part("nmea0183-ports")(partial(ports, Nmea0183))

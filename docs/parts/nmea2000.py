@@ -8,7 +8,7 @@ from nmea2000.native_units import NATIVE_UNITS
 from parts import part
 from parts.can import ports
 from parts.markdown import shown_number, table
-from seatrial_kits.nmea.nmea2000.catalogue import DATA, Pgn
+from seatrial_kits.nmea.nmea2000.catalogue import DATA, READABLE, RECEIVED, Pgn
 from seatrial_kits.nmea.nmea2000.codec import is_fast
 from seatrial_kits.nmea.nmea2000.component import Nmea2000
 from seatrial_kits.nmea.nmea2000.ports import NOT_CONNECTED
@@ -27,7 +27,7 @@ def _field(pgn: Pgn, name: str) -> tuple[str, str]:
 
 @part("nmea2000-messages")
 def messages() -> str:
-    """Return the messages: number, name, interval, priority, kind of packet."""
+    """Return the messages: number, name, interval, priority, kind of packet, who sends it."""
     rows = [
         (
             str(pgn.number),
@@ -35,17 +35,20 @@ def messages() -> str:
             f"{shown_number(pgn.interval_s)} s" if pgn.interval_s else "when it is received",
             str(pgn.priority),
             "fast packet" if is_fast(pgn.number) else "one frame",
+            " and ".join(
+                way for way, known in (("sent", DATA), ("read", RECEIVED)) if pgn.number in known
+            ),
         )
-        for pgn in DATA.values()
+        for pgn in READABLE.values()
     ]
-    return table(("PGN", "message", "interval", "priority", "goes as"), rows)
+    return table(("PGN", "message", "interval", "priority", "goes as", "a node has it"), rows)
 
 
 @part("nmea2000-fields")
 def fields() -> str:
     """Return the fields: where they come from and go to, resolution, unit, sense."""
     rows = []
-    for pgn in DATA.values():
+    for pgn in READABLE.values():
         for each in pgn.fields:
             if each.name == "sid":
                 continue

@@ -212,11 +212,6 @@ def test_mistakes_in_the_making_are_named(options: dict[str, Any], said: str, ri
     assert said in str(caught.value)
 
 
-def test_a_trial_is_no_rig() -> None:
-    with pytest.raises(InputError, match="is a trial: run_trial runs it"):
-        Simulation("hydrone-landing")
-
-
 def test_a_closed_simulation_and_a_state_of_another_are_refused(rig: Rig) -> None:
     path = rig()
     with Simulation(path) as other:

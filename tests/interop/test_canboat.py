@@ -14,9 +14,12 @@ from nmea2000 import NMEA2000Decoder
 from seatrial.trial.files.trial import load_trial
 from seatrial.trial.running.run import run_trial
 from seatrial_kits.can.messages import frame_of
-from seatrial_kits.nmea.nmea2000.codec import Message
+from seatrial_kits.nmea.nmea2000.ais_reports import report
+from seatrial_kits.nmea.nmea2000.codec import Decoder, Message
+from seatrial_kits.nmea.nmea2000.quantities import READERS
 from tests.interop import canboat
 from tests.kits.nmea.nmea2000.network import Network
+from tests.kits.nmea.nmea2000.test_fields_absent import any_value, fields_of
 
 pytestmark = canboat.needed
 
@@ -422,3 +425,134 @@ def as_hull(pgn, fields, hull):
         assert fields["depth"] == 3.5
     elif pgn == 127489:
         assert fields["alternatorPotential"] == 16.0
+
+
+FROM_CANBOAT = {
+    127245: {"rudder": "position", "rudder_order": "angleOrder"},
+    127250: {"heading": "heading", "magnetic_heading": "heading", "variation": "variation"},
+    127251: {"rate_of_turn": "rate"},
+    127257: {"roll": "roll", "pitch": "pitch", "yaw": "yaw"},
+    127258: {"variation": "variation"},
+    127488: {"engine_speed 0": "speed"},
+    127489: {
+        "engine_fuel_rate 0": "fuelRate",
+        "engine_temperature 0": "temperature",
+        "engine_oil_pressure 0": "oilPressure",
+        "engine_voltage 0": "alternatorPotential",
+        "engine_load 0": "engineLoad",
+    },
+    128259: {"water_speed": "speedWaterReferenced", "speed_over_ground": "speedGroundReferenced"},
+    128267: {"depth": "depth", "depth_offset": "offset"},
+    129025: {"place": ("latitude", "longitude")},
+    129026: {"course": "cog", "magnetic_course": "cog", "speed_over_ground": "sog"},
+    129029: {"place": ("latitude", "longitude"), "altitude": "altitude"},
+    129283: {"cross_track": "xte"},
+    129284: {
+        "waypoint_distance": "distanceToWaypoint",
+        "waypoint_bearing": "bearingPositionToDestinationWaypoint",
+        "magnetic_waypoint_bearing": "bearingPositionToDestinationWaypoint",
+        "leg_direction": "bearingOriginToDestinationWaypoint",
+        "magnetic_leg_direction": "bearingOriginToDestinationWaypoint",
+        "waypoint_number": "destinationWaypointNumber",
+        "waypoint_place": ("destinationLatitude", "destinationLongitude"),
+        "closing_speed": "waypointClosingVelocity",
+    },
+    130306: {
+        "wind_speed": "windSpeed",
+        "wind_angle": "windAngle",
+        "water_wind_speed": "windSpeed",
+        "water_wind_angle": "windAngle",
+        "ground_wind_speed": "windSpeed",
+        "ground_wind_angle": "windAngle",
+        "wind_direction": "windAngle",
+        "magnetic_wind_direction": "windAngle",
+    },
+    130310: {
+        "water_temperature": "waterTemperature",
+        "air_temperature": "outsideAmbientAirTemperature",
+        "air_pressure": "atmosphericPressure",
+    },
+    130311: {
+        "water_temperature": "temperature",
+        "air_temperature": "temperature",
+        "air_pressure": "atmosphericPressure",
+        "humidity": "humidity",
+    },
+    130312: {"water_temperature": "actualTemperature", "air_temperature": "actualTemperature"},
+    130313: {"humidity": "actualHumidity"},
+    130314: {"air_pressure": "pressure"},
+    130316: {"water_temperature": "temperature", "air_temperature": "temperature"},
+}
+"""Fields of canboat's that quantities are, by PGN."""
+UNITS = {"engine_speed 0": math.tau / 60.0, "humidity": 0.01}
+UNITS |= {"engine_fuel_rate 0": 1e-3 / 3600.0, "engine_load 0": 0.01}
+AIS_FIELDS = {"latitude": "latitude", "longitude": "longitude", "course": "cog", "speed": "sog"}
+REPORTS = {
+    129038: AIS_FIELDS | {"heading": "heading"},
+    129039: AIS_FIELDS | {"heading": "heading"},
+    129040: AIS_FIELDS | {"heading": "trueHeading", "length": "length", "beam": "beam"},
+    129041: {"latitude": "latitude", "longitude": "longitude", "length": "lengthDiameter"},
+    129809: {},
+    129810: {"length": "length", "beam": "beam"},
+}
+
+
+def with_gaps(pgn, rng):
+    """Return a message for canboat to encode: any values, any of them left out."""
+    values = {f.id: any_value(pgn, f, rng) for f in fields_of(pgn)}
+    kept = {k: v for k, v in values.items() if k not in ("communicationState", "atonStatus")}
+    kept.pop("navigationTerminated", None)
+    present = {k: v for k, v in kept.items() if rng.random() < 0.7}
+    present |= {k: 0 for k in ("instance",) if k in values}
+    present |= {k: values[k] for k in ("userId", "method") if k in values}
+    for name in (
+        "date",
+        "etaDate",
+        "time",
+        "etaTime",
+        "ageOfService",
+        "totalEngineHours",
+        "discreteStatus1",
+        "discreteStatus2",
+    ):  # canboat encodes them as texts
+        present.pop(name, None)
+    return {"pgn": pgn, "src": 7, "dst": 255, "prio": 3, "fields": present}
+
+
+@pytest.mark.parametrize("pgn", [*FROM_CANBOAT, *REPORTS])
+def test_quantities_are_those_of_canboat_whatever_is_absent(pgn):
+    """Frames that canboat writes; what it reads in them, and what a node here does."""
+    rng = random.Random(pgn)
+    packets = canboat.encoded([with_gaps(pgn, rng) for _ in range(40)])
+    frames = [(k * 10**8 + j, f) for k, each in enumerate(packets) for j, f in enumerate(each)]
+    theirs = canboat.decoded(frames)
+    assert len(theirs) == len(packets)
+    seen = set()
+    for message, packet in zip(theirs, packets, strict=True):
+        decoder = Decoder({})
+        *_, found = [decoder.decode(frame) for frame in packet]
+        fields = message["fields"]
+        if pgn in REPORTS:
+            read, names = report(pgn, found.fields), REPORTS[pgn]
+            assert read["mmsi"] == int(fields["userId"])
+            assert read.get("name", "") == (fields.get("name") or fields.get("atonName") or "")
+        else:
+            read, names = READERS[pgn](found.fields), FROM_CANBOAT[pgn]
+        for name, value in read.items():
+            if value is None or name not in names:
+                continue
+            seen.add(name)
+            wanted = names[name] if isinstance(names[name], tuple) else (names[name],)
+            given = value if isinstance(value, (tuple, list)) else (value,)
+            for one, field in zip(given, wanted, strict=False):
+                expected = fields[field] * UNITS.get(name, 1.0)
+                if name == "magnetic_heading":
+                    expected += fields.get("deviation") or 0.0
+                if name in ("wind_angle", "water_wind_angle"):
+                    expected = math.remainder(expected - math.pi, math.tau)
+                assert one == pytest.approx(expected, rel=2e-3 if "engine_s" in name else 1e-6,
+                                            abs=1e-7), name  # fmt: skip
+        for name, field in names.items():  # what canboat has, the reader has
+            if isinstance(field, str) and fields.get(field) is not None and name in read:
+                assert read[name] is not None, name
+    assert seen >= {n for n in names if n != "name"} - {"ground_wind_angle"} or pgn in REPORTS

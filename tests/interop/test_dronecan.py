@@ -352,3 +352,100 @@ def test_attitude_crosses_the_bus():
         ahrs.set("attitude_valid", False)
         b.run(1.1)
         assert not node.get("attitude_valid")
+
+
+def test_a_battery_crosses_the_bus_and_what_is_unknown_stays_so():
+    pack = peripheral("pack", node_id=22.0, channels="", battery_period=0.1, battery_id=3.0)
+    node = autopilot()
+    with bench(node, pack) as b:
+        infos = b.collect(uavcan.equipment.power.BatteryInfo)
+        pack.set("battery_voltage", 15.9)
+        pack.set("battery_current", -2.5)
+        b.run(0.25)
+        found = infos[-1].message
+        assert found.voltage == pytest.approx(15.9, abs=0.008)
+        assert (found.current, found.battery_id) == (-2.5, 3)
+        assert math.isnan(found.temperature)
+        assert math.isnan(found.remaining_capacity_wh)
+        assert found.state_of_charge_pct == 127
+        assert node.get("battery_valid")
+        assert node.get("battery_current") == -2.5
+        assert (node.get("battery_temperature"), node.get("battery_charge")) == (0.0, 0.0)
+        pack.set("battery_charge", 0.42)
+        pack.set("battery_temperature", 300.0)
+        b.run(0.2)
+        assert infos[-1].message.state_of_charge_pct == 42
+        assert node.get("battery_charge") == pytest.approx(0.42)
+        assert node.get("battery_temperature") == pytest.approx(300.0, abs=0.13)
+        b.peer.broadcast(uavcan.equipment.power.BatteryInfo(voltage=12.0, state_of_charge_pct=7))
+        b.run(0.02)
+        assert node.get("battery_charge") == pytest.approx(0.07)
+
+
+def test_a_magnetometer_reads_the_earths_field_in_body_axes():
+    """NOAA's calculator (WMM2025, 2026.0) at 63.4 N, 10.4 E: some 52.3 uT, 76 degrees down."""
+    home = {"latitude": math.radians(63.4), "longitude": math.radians(10.4)}
+    compass = peripheral("compass", node_id=23.0, channels="", magnetometer_period=0.05, **home)
+    node = autopilot()
+    with bench(node, compass) as b:
+        fields = b.collect(uavcan.equipment.ahrs.MagneticFieldStrength2)
+        b.run(0.2)
+        north, east, down = fields[-1].message.magnetic_field_ga
+        assert math.hypot(north, east, down) == pytest.approx(0.523, abs=0.01)
+        assert math.degrees(math.atan2(down, math.hypot(north, east))) == pytest.approx(
+            75.5, abs=1.5
+        )
+        assert node.get("magnetic_field") == pytest.approx(
+            [north * 1e-4, east * 1e-4, down * 1e-4], rel=1e-6
+        )
+        compass.set("attitude", [0.0, 0.0, math.pi / 2])  # the bow to the east
+        b.run(0.1)
+        turned = fields[-1].message.magnetic_field_ga
+        assert list(turned) == pytest.approx([east, -north, down], abs=3e-4)
+        compass.set("magnetic_field", [1e-5, 2e-5, -3e-5])
+        b.run(0.1)
+        assert node.get("magnetic_field") == pytest.approx([1e-5, 2e-5, -3e-5], rel=1e-3)
+        older = uavcan.equipment.ahrs.MagneticFieldStrength(magnetic_field_ga=[0.1, 0.2, 0.3])
+        b.peer.broadcast(older)
+        b.run(0.02)
+        assert node.get("magnetic_field") == pytest.approx([1e-5, 2e-5, 3e-5], rel=1e-3)
+
+
+def test_a_barometer_reads_the_standard_atmosphere():
+    """ISO 2533: 89 874.6 Pa at 1000 m."""
+    baro = peripheral("baro", node_id=24.0, channels="", barometer_period=0.1, altitude=1000.0)
+    node = autopilot(timeout=0.5)
+    with bench(node, baro) as b:
+        pressures = b.collect(uavcan.equipment.air_data.StaticPressure)
+        b.run(0.15)
+        assert pressures[-1].message.static_pressure == pytest.approx(89_874.6, abs=1.0)
+        assert node.get("static_pressure") == pytest.approx(89_874.6, abs=1.0)
+        assert node.get("air_temperature") == pytest.approx(288.15, abs=0.13)
+        baro.set("static_pressure", 101_000.0)
+        baro.set("air_temperature", 280.0)
+        b.run(0.1)
+        assert node.get("static_pressure") == 101_000.0
+        assert node.get("air_temperature") == 280.0
+        b.peer.broadcast(uavcan.equipment.air_data.StaticPressure(static_pressure=math.nan))
+        b.run(0.02)
+        assert node.get("static_pressure") == 101_000.0
+
+
+def test_the_autopilot_says_whether_it_is_armed():
+    esc, node = peripheral("esc"), autopilot()
+    with bench(node, esc) as b:
+        statuses = b.collect(uavcan.equipment.safety.ArmingStatus)
+        b.run(0.6)
+        assert statuses[-1].message.status == 0  # nothing arms it by itself
+        assert not esc.get("armed")
+        node.set("armed", True)
+        b.until(lambda: esc.get("armed"), 0.6)
+        assert statuses[-1].message.status == 255
+        node.set("armed", False)
+        b.until(lambda: not esc.get("armed"), 0.6)
+    esc = peripheral("esc")
+    with bench(esc) as b:
+        b.peer.broadcast(uavcan.equipment.safety.ArmingStatus(status=255))
+        begun = b.until(lambda: esc.get("armed"), 0.1)
+        ended = b.until(lambda: not esc.get("armed"), 3.5)
+        assert 2.9 < ended - begun < 3.1

@@ -13,6 +13,7 @@ from tests.kits.nmea.nmea0183.bench import DEG, VALID, Bench
 
 NODE = Path(__file__).with_name("node")
 WAIT_S = 120.0
+BEARING = -math.atan2(100.0, 900.0) % math.tau
 
 pytestmark = pytest.mark.skipif(
     shutil.which("node") is None or not (NODE / "node_modules/@signalk/nmea0183-signalk").is_dir(),
@@ -67,6 +68,15 @@ def test_signal_k_agrees():
         ("SDDPT", "environment.depth.belowTransducer", 12.34, 1e-9),
         ("YXMTW", "environment.water.temperature", 295.65, 1e-9),
         ("AGRSA", "steering.rudderAngle", -7.5 * DEG, half_degree_digit),
+        ("HCHDM", "navigation.headingMagnetic", 13.0 * DEG, half_degree_digit),
+        ("WIMWD", "environment.wind.directionTrue", math.atan2(3.0, 4.0), half_degree_digit),
+        ("WIMWD", "environment.wind.speedTrue", 5.0, 0.003),
+        ("AGAPB", "navigation.courseRhumbline.crossTrackError", 100.0, 1.0),
+        ("AGAPB", "steering.autopilot.target.headingTrue", BEARING, half_degree_digit),
+        ("AGBWC", "navigation.courseGreatCircle.nextPoint.distance", math.hypot(900, 100), 1.0),
+        ("AGBOD", "navigation.courseRhumbline.bearingTrackMagnetic", 23.0 * DEG, 1e-3),
+        ("ERRPM", "propulsion.engine_2.revolutions", 100.0 / math.tau, 1e-3),
+        ("GNGNS", "navigation.gnss.antennaAltitude", 1.5, 1e-9),
     ):
         assert found[name][path] == pytest.approx(value, abs=within), (name, path)
 

@@ -11,7 +11,17 @@ from types import TracebackType
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from ..errors import InputError, SimulationError, unknown
-from .assembling import Origin, assembled, begun, cannot_start_anew, give, meet_weather, started
+from .assembling import (
+    Origin,
+    act_on,
+    assembled,
+    begun,
+    cannot_start_anew,
+    give,
+    meet_weather,
+    started,
+    steps_ahead,
+)
 from .signal import Signal, described
 from .written import as_duration, as_settings, as_written
 
@@ -51,14 +61,16 @@ class State:
 
 
 class Simulation:
-    """A rig that the caller steps, in the caller's process.
+    """A rig or a trial that the caller steps, in the caller's process.
 
-    ``rig`` is the name of a rig (not of a trial: `run_trial` runs those, with their events and
-    criteria), or the path of a ``.toml`` file, or of an SSP or OSP-IS package. ``set`` gives
+    ``rig`` is the name of a rig or a trial (of a rig if both have it), the path of a ``.toml``
+    file, or of an SSP or OSP-IS package. A trial brings its settings, sea, wind, current, events
+    and faults; its criteria and its stop time are `run_trial`'s. ``set`` gives
     parameters, and start values of inputs, by ``component.port`` as a rig's file does: numbers in
     the port's unit (SI), text with a unit (``"10 deg"``) or the name of a preset, sequences and
     arrays with one element per axis; ``component.isolated`` gives a component a process of its own
-    (true, false or "sandboxed"). ``seed`` is what all noise derives from, ``variant`` one of the
+    (true, false or "sandboxed"); a trial has keys such as ``sea.height`` beside them. ``seed`` is
+    what all noise derives from (None: the trial's, or 1), ``variant`` one of the
     vehicle's, ``engine`` as for `run_trial`, ``step`` the communication step in s or as text in
     place of the rig's, ``choices`` those of the rig: ``{"vehicle": "gloria"}``. Time starts at 0.
 
@@ -78,7 +90,7 @@ class Simulation:
         rig: str | Path,
         *,
         set: Mapping[str, Any] | None = None,
-        seed: int = 1,
+        seed: int | None = None,
         variant: str | None = None,
         engine: str = "direct",
         step: float | str | None = None,
@@ -89,16 +101,17 @@ class Simulation:
         self._observers: list[Callable[[Simulation], object]] = []
         self._error = ""
         with confined():
-            system = assembled(
+            made = assembled(
                 rig, set, seed=seed, variant=variant, engine=engine, step=step, choices=choices
             )
             try:
-                self._master = started(system)
+                self._master = started(made)
             except BaseException:
-                system.discard()
+                made.system.discard()
                 raise
-        self._origin = Origin.of(system)
-        self._free = weakref.finalize(self, system.discard)
+        self._made = made
+        self._origin = Origin.of(made.system)
+        self._free = weakref.finalize(self, made.system.discard)
 
     # ------------------------------------------------------------------ time
 
@@ -123,7 +136,9 @@ class Simulation:
         while count:
             self._refuse_ended()
             try:
-                count -= self._master.advance(1 if self._observers else count)
+                most = 1 if self._observers else steps_ahead(self._made, self._master, count)
+                count -= self._master.advance(most)
+                act_on(self._made, self._master)
             except BaseException as error:  # an interrupted step ends at no communication point
                 self._error = str(error) or type(error).__name__
                 raise
@@ -280,11 +295,11 @@ class Simulation:
         before = self._origin
         try:
             with confined():
-                give(system, as_settings(set), seed)
+                give(self._made, as_settings(set), seed)
                 self._error = "it could not start anew"
                 for part in system.parts.values():
                     part.instance.reset()
-                self._master = begun(system)
+                self._master = begun(self._made)
         except BaseException:
             before.give_back(system)
             raise

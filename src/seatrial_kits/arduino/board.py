@@ -13,21 +13,28 @@ import select
 import struct
 import subprocess
 import time
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
 
 from seatrial.errors import SimulationError
 
+from .resources import laid_out
+from .toolchain import arduino_core
+
 _EVENT = struct.Struct("<BBHQ")
 _INPUT = struct.Struct("<BBHd")
 _HEAD = struct.Struct("<IQI")
-_ADDRESS = re.compile(r" \[at (0x[0-9a-f]+)\]")
+_ADDRESSES = re.compile(r" \[at((?: 0x[0-9a-f]+)*)\]")
 UART, EDGE, DUTY, WIDTH, EEPROM, RESET = (ord(letter) for letter in "TPDHeR")
 """Kinds of events: a byte has left a UART; a pin has another level, is modulated with a share, high
 for so long; a byte of the EEPROM has changed; the board has started again."""
 
 _ANSWER_S = 20.0
 """Wall clock: a program that takes this long for one step hangs where it cannot report it."""
+
+_CALL = 0xFFFFFFFF
+"""In the place of a size: a part is called."""
 
 Event = tuple[int, int, int, int]
 """Kind, index, value, cycle."""
@@ -44,13 +51,23 @@ class Inputs:
         self.data += _INPUT.pack(ord(kind), index, value, number)
 
 
+Answer = Callable[[int, int, int, int, bytes], "tuple[int, Inputs]"]
+"""What answers a call of a part: call, part, value, cycle, and bytes that were sent to it."""
+
+
 class Board:
     """A running ``program``, ``name`` in messages; ``source`` has the lines of addresses."""
 
     def __init__(
-        self, name: str, program: Path, *arguments: str, source: Path | None = None
+        self,
+        name: str,
+        program: Path,
+        *arguments: str,
+        source: Path | None = None,
+        answer: Answer | None = None,
     ) -> None:
         self.name, self._source = name, source or program
+        self._answer = answer
         theirs_in, self._requests = os.pipe()
         self._answers, theirs_out = os.pipe()
         try:
@@ -83,7 +100,8 @@ class Board:
             # A program that could not begin has reported why and is gone before the request.
             with contextlib.suppress(BrokenPipeError):
                 self._write(request)
-            size = int.from_bytes(self._read(4), "little")
+            while (size := int.from_bytes(self._read(4), "little")) == _CALL:
+                self._answer_call()
             answer = self._read(size)
         except (OSError, EOFError):
             raise SimulationError(f"{self.name}: its program {self._ended()}") from None
@@ -108,6 +126,15 @@ class Board:
         self._process.wait()
 
     # ------------------------------------------------------------------ inside
+
+    def _answer_call(self) -> None:
+        """Let a part answer what the board has called it for."""
+        call, index, value, cycle = _EVENT.unpack(self._read(_EVENT.size))
+        sent = self._read(int.from_bytes(self._read(4), "little"))
+        result, inputs = (
+            self._answer(call, index, value, cycle, sent) if self._answer else (0, Inputs())
+        )
+        self._write(struct.pack("<IQ", 8 + len(inputs.data), result) + inputs.data)
 
     def _write(self, data: bytes) -> None:
         view = memoryview(data)
@@ -140,14 +167,21 @@ class Board:
         return f"ended by signal {-code}" if code is not None and code < 0 else f"ended ({code})"
 
     def _placed(self, output: str) -> str:
-        """Return a message with the line of the sketch in the place of an address."""
-        match = _ADDRESS.search(output)
+        """Return a message with a line in the place of addresses: the first that is a sketch's.
+
+        Without one, it is the first of the board's own.
+        """
+        match = _ADDRESSES.search(output)
         if match is None:
             return output
         tool = "avr-addr2line" if self._source.suffix == ".elf" else "addr2line"
-        command = [tool, "-e", str(self._source), match[1]]
+        command = [tool, "-e", str(self._source), *match[1].split()]
         with contextlib.suppress(OSError):
             found = subprocess.run(command, capture_output=True, text=True, check=False)
-            if (line := found.stdout.strip().split(" (")[0]) and not line.startswith("?"):
-                return output.replace(match[0], f" ({line})")
-        return output
+            lines = [each.split(" (")[0] for each in found.stdout.splitlines()]
+            known = [each for each in lines if not each.startswith("?") and ":?" not in each]
+            boards = (f"{arduino_core()}/", f"{laid_out()}/", "/build/", "/usr/")
+            theirs = [each for each in known if not each.startswith(boards)]
+            if place := [*theirs, *known][:1]:
+                return output.replace(match[0], f" ({place[0]})")
+        return output.replace(match[0], "")

@@ -15,9 +15,12 @@ from .libraries import ASSEMBLY, SOURCES, compiled, files_of, read_source, write
 from .mcus import Mcu
 from .resources import TEXTS, cached, contents, laid_out
 from .sketch import Sketch
+from .target_board import is_foreign, target_text
 from .toolchain import need, version
-from .unsupported import advice, unsupported
+from .unsupported import advice, missing_headers, unsupported
 
+_LINES = 120
+"""Of compilers' errors that a message has."""
 _CORE = ("machine", "uarts", "api", "avr_libc", "texts", "devices")
 _BASE = ("-std=gnu++17", "-gdwarf-4", "-w", "-fpermissive", "-fno-pie", "-ffp-contract=off")
 _SKETCH = (
@@ -45,19 +48,16 @@ def build_host(sketch: Sketch, mcu: Mcu) -> Path:
 def _host(sketch: Sketch, mcu: Mcu, file: Path, scratch: Path) -> None:
     place = laid_out()
     sketch = with_used_libraries(sketch, _includer(sketch, mcu), scratch / "whole.cpp")
-    if problems := unsupported(sketch):
-        raise InputError(
-            f"{sketch.name} cannot run in the back end 'host':\n" + "\n".join(problems)
-        )
+    missing = missing_headers(sketch, _includer(sketch, mcu), scratch / "whole.cpp")
+    refuse("host", sketch, [*missing, *unsupported(sketch)])
     common = ["g++", *_BASE, *mcu.defines, f"-I{place / 'core'}", f"-I{place / 'shared'}"]
     objects = [_core_object(name, mcu, common) for name in _CORE]
     sources, places = _narrowed_copy(sketch, scratch)
     includes = [f"-I{each}" for each in places] + ["-include", str(place / "core" / "sketch.h")]
-    for number, source in enumerate(sources):
-        result = scratch / f"{number}.o"
-        command = [*common, *_SKETCH, *sketch.flags, *includes]
-        run([*command, "-c", str(source), "-o", str(result)], sketch.name)
-        objects.append(result)
+    command = [*common, *_SKETCH, *sketch.flags, *includes]
+    theirs = {scratch / f"{number}.o": source for number, source in enumerate(sources)}
+    run_all([[*command, "-c", str(f), "-o", str(o)] for o, f in theirs.items()], sketch)
+    objects += theirs
     link = ["g++", "-no-pie", *map(str, objects), "-lpthread", "-o", str(file)]
     run(link, sketch.name)
 
@@ -133,6 +133,29 @@ def _narrowed_copy(sketch: Sketch, scratch: Path) -> tuple[list[Path], list[Path
 
 def run(command: list[str], name: str) -> None:
     """Run a compiler. Raises InputError with its output, if it refuses."""
+    if output := _refusal(command):
+        raise InputError(f"{name} does not compile:\n{output}")
+
+
+def run_all(commands: list[list[str]], sketch: Sketch) -> None:
+    """Compile the sources of a sketch. Raises InputError with what is wrong with any of them."""
+    outputs = [output for command in commands if (output := _refusal(command))]
+    if outputs:
+        output = "\n".join("\n".join(outputs).splitlines()[:_LINES])
+        more = [target_text(sketch)] if is_foreign(sketch) else []
+        raise InputError("\n".join([f"{sketch.name} does not compile:", output, *more]))
+
+
+def refuse(backend: str, sketch: Sketch, problems: list[str]) -> None:
+    """Raise InputError if there are problems, with the board that a sketch is for."""
+    if problems:
+        target = target_text(sketch)
+        head = f"{sketch.name} cannot run in the back end {backend!r}:"
+        raise InputError("\n".join([head, *problems, *([f"it is {target}"] if target else [])]))
+
+
+def _refusal(command: list[str]) -> str:
+    """Run a compiler; return its errors with what to do about them, '' if there are none."""
     done = subprocess.run(
         command,
         capture_output=True,
@@ -141,7 +164,7 @@ def run(command: list[str], name: str) -> None:
         check=False,
         env={**os.environ, "LC_ALL": "C"},
     )
-    if done.returncode:
-        output = "\n".join(done.stderr.splitlines()[:30])
-        output = "\n".join([output, *advice(output)])
-        raise InputError(f"{name} does not compile:\n{output}")
+    if not done.returncode:
+        return ""
+    output = "\n".join(done.stderr.splitlines()[:30]) or f"{command[0]} ended ({done.returncode})"
+    return "\n".join([output, *advice(output)])

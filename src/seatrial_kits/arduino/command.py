@@ -19,21 +19,24 @@ from .component import Arduino
 from .dialect import LIMITS
 from .emulator import build_emulator, build_firmware
 from .libraries import read_source
-from .mcus import MCUS
+from .mcus import MCUS, Mcu
+from .platformio import project_mcu
 from .sketch import Sketch, find_sketch
-from .unsupported import unsupported
-from .wiring import PARTS, read_uarts, read_wires
+from .target_board import target_text
+from .wiring import Wire, read_uarts, read_wires
 
 sketch_app = typer.Typer(no_args_is_help=True, pretty_exceptions_enable=False)
 
 _STEP = 0.02
 _SOFT_SERIAL = re.compile(r"\bSoftwareSerial\s+\w+\s*[({]\s*(\d+)\s*,\s*(\d+)")
+_SOFT = ("soft_rx", "soft_tx")
 _SERIAL = re.compile(r"\bSerial([123]?)\s*\.\s*begin\s*\(\s*(\d*)")
 _FOLDER = Annotated[str, typer.Argument(metavar="SKETCH", help="A sketch's folder or .ino.")]
 _BACKEND = Annotated[str, typer.Option(help="'host' or 'simavr'.")]
 _MCU = Annotated[str, typer.Option(help="atmega2560 or atmega328p.")]
 _PROFILE = Annotated[str, typer.Option(help="PROFILE:LINK whose parameters to use: gloria:mega.")]
 _LIBRARIES = Annotated[str, typer.Option(help="Folders of libraries, from the sketch's on; with ;")]
+_ENVIRONMENT = Annotated[str, typer.Option(help="Of platformio.ini; default_envs if none.")]
 _FLAGS = Annotated[str, typer.Option(help="Options of the compiler, as '-DNAME=VALUE'.")]
 
 
@@ -68,12 +71,17 @@ def check(
     mcu: _MCU = "",
     libraries: _LIBRARIES = "",
     flags: _FLAGS = "",
+    environment: _ENVIRONMENT = "",
 ) -> None:
     """Say what a sketch is made of, what of it is unsupported, and if its lines fit a profile."""
-    values = _values(profile, mcu=mcu, libraries=libraries, flags=flags)
+    values = _values(profile, mcu=mcu, libraries=libraries, flags=flags, environment=environment)
     found = _found(sketch, values)
-    board = MCUS[values["mcu"]]
+    board = _mcu(found, values)
     print(printable(f"{found.name} on the {board.board} ({board.name})"))
+    if project := found.project:
+        print(printable(f"  environment {project.environment}, board {project.board}"))
+        for flag in project.ignored:
+            print(printable(f"  flag that changes nothing here: {flag}"))
     for kind, files in (
         ("tab", found.tabs),
         ("source", found.others),
@@ -82,17 +90,21 @@ def check(
         for file in files:
             print(printable(f"  {kind} {file}"))
     for wire in read_wires(values.get("wires", ""), board):
-        place = f"0x{wire.place:02x}" if wire.kind in PARTS else f"pin {wire.place}"
-        print(printable(f"  {place}: {wire.kind} {wire.number or ''}".rstrip()))
-    problems = _lines(found, values)
+        print(printable(f"  {wire}"))
+    if target := target_text(found):
+        print(printable(f"  {target}"))
     if _checked_backend(backend) == "host":
         print("what the back end 'host' does not show:")
         for limit in LIMITS:
             print(printable(f"  {limit}"))
-        problems = [*unsupported(found), *problems]
+    problems = _lines(found, values)
+    try:
+        _built(found, board, backend)
+    except InputError as error:
+        problems.insert(0, str(error))
     if problems:
         raise InputError("\n".join(problems))
-    print("nothing is unsupported")
+    print(f"it builds for the back end {backend!r}: nothing is unsupported")
 
 
 @sketch_app.command()
@@ -103,16 +115,13 @@ def build(
     mcu: _MCU = "",
     libraries: _LIBRARIES = "",
     flags: _FLAGS = "",
+    environment: _ENVIRONMENT = "",
 ) -> None:
     """Build a sketch, and say where the program or the firmware is."""
-    values = _values(profile, mcu=mcu, libraries=libraries, flags=flags)
-    board = MCUS[values["mcu"]]
+    values = _values(profile, mcu=mcu, libraries=libraries, flags=flags, environment=environment)
     found = _found(sketch, values)
-    if _checked_backend(backend) == "host":
-        print(build_host(found, board))
-    else:
-        build_emulator(board)
-        print(build_firmware(found, board))
+    board = _mcu(found, values)
+    print(_built(found, board, _checked_backend(backend)))
 
 
 @sketch_app.command()
@@ -123,6 +132,7 @@ def run(
     mcu: _MCU = "",
     libraries: _LIBRARIES = "",
     flags: _FLAGS = "",
+    environment: _ENVIRONMENT = "",
     seconds: Annotated[float, typer.Option(help="How long.")] = float("inf"),
 ) -> None:
     """Run a sketch in real time, each UART at a pseudo-terminal that any terminal program opens.
@@ -130,7 +140,7 @@ def run(
     Its sensors rest: for a boat around it, run a rig. Ends with Ctrl-C.
     """
     board = Arduino(Path(sketch).stem)
-    values = _values(profile, mcu=mcu, libraries=libraries, flags=flags)
+    values = _values(profile, mcu=mcu, libraries=libraries, flags=flags, environment=environment)
     values |= {"backend": _checked_backend(backend), "sketch": sketch}
     if not profile and (opened := _opened(_found(sketch, values))):
         values["uarts"] = opened
@@ -154,6 +164,21 @@ def run(
         board.close()
 
 
+def _mcu(sketch: Sketch, values: dict[str, Any]) -> Mcu:
+    """Return the microcontroller, a project's if there is one; keep it in the values."""
+    if sketch.project is not None:
+        values["mcu"] = project_mcu(sketch.project, values["mcu"])
+    return MCUS[values["mcu"]]
+
+
+def _built(sketch: Sketch, board: Mcu, backend: str) -> Path:
+    """Return a sketch's program or firmware, built."""
+    if backend == "host":
+        return build_host(sketch, board)
+    build_emulator(board)
+    return build_firmware(sketch, board)
+
+
 def _opened(sketch: Sketch) -> str:
     """Return the UARTs that a sketch opens at rates written as numbers, as `uarts` has it."""
     found = {
@@ -172,7 +197,8 @@ def _checked_backend(backend: str) -> str:
 
 
 def _found(sketch: str, values: dict[str, Any]) -> Sketch:
-    return find_sketch(sketch, values.get("libraries", ""), values.get("flags", ""))
+    given = (str(values.get(name, "")) for name in ("libraries", "flags", "environment"))
+    return find_sketch(sketch, *given)
 
 
 def _values(profile: str, **given: str) -> dict[str, Any]:
@@ -194,7 +220,6 @@ def _values(profile: str, **given: str) -> dict[str, Any]:
 def _lines(sketch: Sketch, values: dict[str, Any]) -> list[str]:
     """Return the lines that the sketch opens and the board or the profile has not."""
     wires = read_wires(values.get("wires", ""), MCUS[values["mcu"]])
-    pins = {wire.place for wire in wires if wire.kind in ("soft_rx", "soft_tx")}
     problems = []
     for file in sketch.tabs:
         for number, line in enumerate(read_source(file).splitlines(), 1):
@@ -203,11 +228,24 @@ def _lines(sketch: Sketch, values: dict[str, Any]) -> list[str]:
                 problems += [f"{place}: {each}" for each in _no_uart(int(match[1] or 0), values)]
             for match in _SOFT_SERIAL.finditer(code) if "uarts" in values else ():
                 rx, tx = int(match[1]), int(match[2])
-                if not pins & {rx, tx}:
-                    problems.append(
-                        f"{place}: the profile has no line at pins {rx} and {tx}: "
-                        f"wires of '{rx} soft_rx 1; {tx} soft_tx 1' bring that of UART 1 there"
-                    )
+                problems += [f"{place}: {each}" for each in _no_pins(rx, tx, wires)]
+    return problems
+
+
+def _no_pins(rx: int, tx: int, wires: list[Wire]) -> list[str]:
+    """Return which pins of a UART in software have no line of a profile."""
+    lines = {wire.kind: wire for wire in wires if wire.place in (rx, tx)}
+    if not any(kind in lines for kind in _SOFT):
+        return [
+            f"the profile has no line at pins {rx} and {tx}: "
+            f"wires of '{rx} soft_rx 1; {tx} soft_tx 1' bring that of UART 1 there"
+        ]
+    problems = []
+    for kind, pin, does in (("soft_rx", rx, "reads"), ("soft_tx", tx, "writes")):
+        at = [wire.place for wire in wires if wire.kind == kind]
+        if at and pin not in at:
+            there = " and ".join(map(str, at))
+            problems.append(f"it {does} at pin {pin}, and {kind} of the profile is at pin {there}")
     return problems
 
 

@@ -14,23 +14,23 @@ from seatrial.links.endpoints.url import other_end
 from seatrial.links.parameter_validation import start_us
 from seatrial.links.text import Inbox, Outbox
 from seatrial.model.component import NS, Component
-from seatrial.physics.craft.kinematics import to_body
 
 from .board import DUTY, EDGE, EEPROM, RESET, UART, WIDTH, Board, Event, Inputs
 from .build import build_host
 from .eeprom import ERASED, read_eeprom, write_eeprom
 from .emulator import build_emulator, build_firmware, firmware_file
 from .mcus import CLOCK, MCUS, Mcu
+from .measuring import check_ports, measured
+from .part import Part, UartPart, part_failed
+from .parts.shelf import part_class
 from .ports import ArduinoPorts
 from .pulses import Pulses
 from .real_board import RealBoard
-from .sketch import find_sketch
+from .platformio import project_mcu, project_of, read_project
+from .sketch import Sketch, find_sketch
 from .uart_links import open_links
-from .wiring import PARTS, STEPPERS, UARTS, Wire, read_uarts, read_wires
+from .wiring import STEPPERS, UARTS, Wire, read_uarts, read_wires
 
-_GYRO, _FORCE, _FIELD, _PRESSURE, _TEMPERATURE, _FRAME = 0, 3, 6, 9, 10, 11
-_PIXELS = 320
-_ATMOSPHERE = 101325.0
 _WATCHED = ("servo", "pwm", "output", "step", "direction")
 _SOFT = {"soft_rx": "r", "soft_tx": "t"}
 
@@ -79,26 +79,30 @@ class Arduino(ArduinoPorts):
     feedthrough: ClassVar = {}
     discrete = True
     rolls_back = False
-    transient = Component.transient | {"_board", "_eeprom", "_monitors", "_pulses", "_wires"}
+    transient = Component.transient | {
+        *("_board", "_eeprom", "_monitors", "_parts", "_measured", "_pulses", "_wires", "field_n")
+    }
 
     def __init__(self, name: str = "component") -> None:
         super().__init__(name)
         self._board: Board | RealBoard | None = None
         self._off = False
         self._monitors: dict[int, Endpoint] = {}
+        self._parts: list[Part] = []
 
     # ------------------------------------------------------------------ running
 
     def start(self, t: float) -> None:
         """Build what is to run, and connect the wires."""
         self.close()
-        mcu = MCUS[self.mcu]
         try:
+            mcu = self._board_mcu()
             self._wires = read_wires(self.wires, mcu)
             there = {*range(mcu.uarts), *(w.number for w in self._wires if w.kind in _SOFT)}
             self._rates = {k: v for k, v in read_uarts(self.uarts).items() if k in there}
             self._eeprom = read_eeprom(self.eeprom, mcu)
-            self._field_n = self._field()
+            self.field_n = self._field()
+            self._parts = self._made_parts()
             self._begin()
             self._monitors = open_links(self.monitors, "monitors")
         except InputError as error:
@@ -142,6 +146,9 @@ class Arduino(ArduinoPorts):
                 shares[wire.number - 1] = self._pulses[wire.place].share(self._cycle)
             elif wire.kind == "output":
                 levels[wire.number - 1] = bool(self._pulses[wire.place].level)
+        for part in self._parts:
+            for output, width in part.pulses.items():
+                widths[output - 1] = width
         self.pulse, self.duty, self.output = widths, shares, levels
 
     def close(self) -> None:
@@ -157,8 +164,18 @@ class Arduino(ArduinoPorts):
 
     # ------------------------------------------------------------------ inside
 
+    def _found(self) -> Sketch:
+        return find_sketch(self.sketch, self.libraries, self.flags, self.environment)
+
+    def _board_mcu(self) -> Mcu:
+        """Return the microcontroller: a project's, where the sketch is one of PlatformIO."""
+        file = project_of(Path(self.sketch).expanduser()) if self.sketch else None
+        return MCUS[
+            project_mcu(read_project(file, self.environment), self.mcu) if file else self.mcu
+        ]
+
     def _begin(self) -> None:
-        mcu = MCUS[self.mcu]
+        mcu = self._board_mcu()
         if self.backend == "board":
             self._board = RealBoard(
                 self.name, self.links, self.safe_state, self.timeout, self._wires
@@ -169,8 +186,9 @@ class Arduino(ArduinoPorts):
         if self.backend == "host":
             if self.firmware:
                 raise InputError("firmware needs the back end 'simavr'; 'host' runs a sketch")
-            sketch = find_sketch(self.sketch, self.libraries, self.flags)
-            self._board = Board(self.name, build_host(sketch, mcu), str(self.patience))
+            sketch = self._found()
+            program = build_host(sketch, mcu)
+            self._board = Board(self.name, program, str(self.patience), answer=self._answer)
             return
         firmware = firmware_file(self.firmware) if self.firmware else self._built(mcu)
         pins = ",".join(mcu.ports)
@@ -182,12 +200,14 @@ class Arduino(ArduinoPorts):
             mcu.name,
             pins,
             source=firmware,
+            answer=self._answer,
         )
 
     def _power_on(self) -> None:
         """Let cycles count from now on, with nothing on pins and wires yet."""
         self._begun_ns, self._cycle = self.now_ns, 0
         self._last: dict[tuple[str, int], float] = {}
+        self._measured: list[dict[str, Any] | None] = [None] * len(self._parts)
         self._pulses = {w.place: Pulses() for w in self._wires if w.kind in _WATCHED}
         drivers = {w.number: w.place for w in self._wires if w.kind == "direction"}
         self._step_pins = {
@@ -202,6 +222,7 @@ class Arduino(ArduinoPorts):
             self._power_on()
         elif self._off and not off:
             self._begin()
+            self._parts = self._made_parts()
             self._power_on()
             self._resets += 1
         self._off = off
@@ -213,19 +234,19 @@ class Arduino(ArduinoPorts):
             self._board = None
 
     def _built(self, mcu: Mcu) -> Path:
-        return build_firmware(find_sketch(self.sketch, self.libraries, self.flags), mcu)
+        return build_firmware(self._found(), mcu)
 
     def _connect(self, inputs: Inputs) -> None:
         for address, byte in enumerate(self._eeprom):
             if byte != ERASED:
                 inputs.put("E", 0, byte, address)
         for wire in self._wires:
-            if wire.kind in PARTS:
-                inputs.put("I", wire.place, value=PARTS[wire.kind])
-            elif wire.kind in _WATCHED:
+            if wire.kind in _WATCHED:
                 inputs.put("W", wire.place)
             elif wire.kind in _SOFT:
                 inputs.put(_SOFT[wire.kind], wire.number, value=wire.place)
+        for index, part in enumerate(self._parts):
+            part.connect(index, inputs)
         for uart, rate in self._rates.items():  # at the pins where it is connected
             inputs.put("S", uart, rate)
 
@@ -250,6 +271,40 @@ class Arduino(ArduinoPorts):
                     self._last[key] = value
                     inputs.put(*key, value)
         self._last[("", 0)] = 0.0  # connected
+        self._measure(inputs)
+
+    def _measure(self, inputs: Inputs) -> None:
+        """Let each part take in what has changed, and say what it sends."""
+        for index, part in enumerate(self._parts):
+            values = measured(self, part)
+            if values != self._measured[index] or isinstance(part, UartPart):
+                self._measured[index] = values
+                try:
+                    part.update(self._cycle / CLOCK, values, inputs)
+                except Exception as error:
+                    raise part_failed(self.name, part, error) from error
+
+    def _made_parts(self) -> list[Part]:
+        """Return the parts at the board's places."""
+        near = Path(self.sketch or self.firmware or ".").expanduser()
+        folder = near if near.is_dir() else near.parent
+        parts = []
+        for wire in self._wires:
+            if wire.at:
+                made = part_class(wire.kind, folder)((wire.place, *wire.more), wire.number or 1)
+                check_ports(self, made, wire.kind)
+                parts.append(made)
+        # The board counts those at its buses and pins.
+        return sorted(parts, key=lambda part: isinstance(part, UartPart))
+
+    def _answer(
+        self, call: int, index: int, value: int, cycle: int, sent: bytes
+    ) -> tuple[int, Inputs]:
+        part = self._parts[index]
+        try:
+            return part.answer(call, value, cycle, sent)
+        except Exception as error:
+            raise part_failed(self.name, part, error) from error
 
     def _signals(self, wire: Wire) -> list[tuple[tuple[str, int], float]]:
         """Return the records that a wire's signals give: kind and index, value."""
@@ -265,32 +320,7 @@ class Arduino(ArduinoPorts):
         if kind == "vane":
             turn = (self.wind_angle + math.pi) / math.tau % 1.0
             return [(("A", self._channel(wire)), wire.factor * turn)]
-        if kind == "mpu6050":
-            motion = [*self.gyro, *self.accelerometer]
-            return [(("V", _GYRO + i), value) for i, value in enumerate(motion)]
-        if kind == "hmc5883l":
-            field = to_body(self.attitude, self._field_n)
-            return [(("V", _FIELD + i), value) for i, value in enumerate(field)]
-        if kind == "pixy":
-            return self._blocks()
-        if kind == "ms5837":
-            pressure = _ATMOSPHERE + self.water_density * self.gravity * self.depth
-            return [
-                (("V", _PRESSURE), pressure),
-                (("V", _TEMPERATURE), self.water_temperature),
-            ]
         return []
-
-    def _blocks(self) -> list[tuple[tuple[str, int], float]]:
-        """Return what a pixy has of a frame: number, blocks, signature, x and width of each."""
-        focal = _PIXELS / 2.0 / math.tan(0.5 * self.view_width)
-        values: list[float] = [self.sight_frame, self.sight_count]
-        sights = zip(self.sight_kind, self.sight_bearing, self.sight_size, strict=True)
-        for signature, bearing, size in sights:
-            ahead = min(max(bearing, -1.5), 1.5)
-            width = 2.0 * focal * math.tan(0.5 * min(max(size, 0.0), 3.0))
-            values += [signature, _PIXELS / 2.0 + focal * math.tan(ahead), width]
-        return [(("V", _FRAME + i), float(value)) for i, value in enumerate(values)]
 
     def _field(self) -> Sequence[float]:
         given: Sequence[float] = self.magnetic_field
@@ -300,7 +330,13 @@ class Arduino(ArduinoPorts):
         return earth_field(*home, start_us(self.date) * 1e-6)
 
     def _channel(self, wire: Wire) -> int:
-        return wire.place - MCUS[self.mcu].first_analog
+        return wire.place - self._board_mcu().first_analog
+
+    def _hear(self, uart: int, data: bytes) -> None:
+        for part in self._parts:
+            if isinstance(part, UartPart) and part.places[0] == uart:
+                part.time = self._cycle / CLOCK
+                part.received(data)
 
     def _count_step(self, motor: int, direction: int | None) -> None:
         up = direction is None or self._pulses[direction].level
@@ -332,5 +368,6 @@ class Arduino(ArduinoPorts):
                 box.put(time_ns, data)
                 box.flush()
                 self._sent += len(data)
+                self._hear(uart, data)
                 for channel in self._monitors[uart].channels() if uart in self._monitors else ():
                     channel.send(data)

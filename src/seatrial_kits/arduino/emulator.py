@@ -11,14 +11,17 @@ from pathlib import Path
 
 from seatrial.errors import InputError
 
-from .build import include_folders, run, with_used_libraries
+from .build import include_folders, refuse, run, run_all, with_used_libraries
 from .libraries import ASSEMBLY, SOURCES
 from .mcus import Mcu
 from .resources import TEXTS, cached, contents, laid_out
 from .sketch import Sketch
 from .toolchain import arduino_core, need, version
+from .unsupported import missing_headers
 
 _FLAGS = ("-Os", "-g", "-w", "-ffunction-sections", "-fdata-sections", "-DF_CPU=16000000L")
+_PINS = ("pinMode", "digitalWrite", "digitalRead", "analogWrite")
+"""Functions of the core that ``avr/pins.c`` stands before."""
 _CXX = ("-std=gnu++11", "-fpermissive", "-fno-exceptions", "-fno-threadsafe-statics")
 
 
@@ -60,14 +63,17 @@ def build_firmware(sketch: Sketch, mcu: Mcu) -> Path:
         more = [*bundled, *(f / "utility" for f in bundled)]
         main = scratch / f"{sketch.name}.ino.cpp"
         includer = [f"-I{f}" for f in (*include_folders(sketch), *more)]
-        used = with_used_libraries(sketch, [*_compiler(main, mcu, sketch.flags), *includer], main)
+        command = [*_compiler(main, mcu, sketch.flags), *includer]
+        used = with_used_libraries(sketch, command, main)
+        refuse("simavr", sketch, missing_headers(used, command, main))
         includes = [*include_folders(used), *more]
-        objects = [
-            _object(f, mcu, used.flags, includes, scratch, i)
-            for i, f in enumerate([main, *used.others, *used.library_sources()])
-        ]
+        pins = laid_out() / "avr" / "pins.c"
+        theirs = [main, pins, *used.others, *used.library_sources()]
+        objects = {scratch / f"{i}.o": f for i, f in enumerate(theirs)}
+        run_all([_compile(f, mcu, used.flags, includes, o) for o, f in objects.items()], sketch)
         archives = [_bundled(mcu, sketch.flags), _core(mcu, sketch.flags)]
         link = ["avr-gcc", "-Os", "-Wl,--gc-sections", f"-mmcu={mcu.name}", "-o", str(file)]
+        link += [f"-Wl,--wrap={name}" for name in _PINS]
         group = ["-Wl,--start-group", *map(str, archives), "-Wl,--end-group"]
         run([*link, *map(str, objects), *group, "-lm"], sketch.name)
         _check_memory(file, mcu, sketch.name)
@@ -132,10 +138,16 @@ def _object(
 ) -> Path:
     """Return the object file of one source; its folder is searched for headers first."""
     compiled = scratch / f"{number}.o"
-    places = [f"-I{place}" for place in includes]
-    command = [*_compiler(file, mcu, flags), *places, "-c", str(file), "-o", str(compiled)]
-    run(command, file.name)
+    run(_compile(file, mcu, flags, includes, compiled), file.name)
     return compiled
+
+
+def _compile(
+    file: Path, mcu: Mcu, flags: tuple[str, ...], includes: list[Path], result: Path
+) -> list[str]:
+    """Return the command that compiles one source."""
+    places = [f"-I{place}" for place in includes]
+    return [*_compiler(file, mcu, flags), *places, "-c", str(file), "-o", str(result)]
 
 
 def _compiler(file: Path, mcu: Mcu, flags: tuple[str, ...]) -> list[str]:

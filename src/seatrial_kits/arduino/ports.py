@@ -21,7 +21,7 @@ from seatrial.model.unit_table import STANDARD_GRAVITY
 from .mcus import MCUS
 from .sketch import read_flags
 from .uart_links import read_links, read_monitors
-from .wiring import BLOCKS, OTHERS, SERVOS, STEPPERS, UARTS, read_uarts, read_wires
+from .wiring import BLOCKS, GROUP, OTHERS, SERVOS, STEPPERS, UARTS, read_uarts, read_wires
 
 BACKENDS = ("host", "simavr", "board")
 _UARTS = tuple(f"uart{i}" for i in range(UARTS))
@@ -36,11 +36,16 @@ class ArduinoPorts(Reachable, Component):
 
     backend = Parameter("host", "1", "what runs the sketch", choices=BACKENDS)
     mcu = Parameter("atmega2560", "1", "microcontroller", choices=tuple(MCUS))
-    sketch = Parameter("", "1", "folder of the sketch, or its .ino", role="file")
+    sketch = Parameter(
+        "", "1", "folder of the sketch, its .ino, or a folder with a platformio.ini", role="file"
+    )
     firmware = Parameter(
         "", "1", "simavr: a .hex or .elf file in the place of a sketch", role="file"
     )
     libraries = Parameter("", "1", "folders of libraries, relative to the sketch's folder; with ;")
+    environment = Parameter(
+        "", "1", "of a project's platformio.ini; none: default_envs, or the only one"
+    )
     flags = Parameter(
         "", "1", "options of the compiler, as -DNAME=VALUE; separated by spaces", check=read_flags
     )
@@ -52,7 +57,7 @@ class ArduinoPorts(Reachable, Component):
     wires = Parameter(
         "",
         "1",
-        "PIN KIND NUMBER or ADDRESS DEVICE of all that is connected; with ;",
+        "PIN KIND NUMBER or PLACE PART NUMBER of all that is connected; with ;",
         check=read_wires,
     )
     links = Parameter(
@@ -154,6 +159,15 @@ class ArduinoPorts(Reachable, Component):
     sight_frame = Input("1", "number of the frame", type=int, optional=True)
     depth = Input("m", "depth of the pressure sensor", optional=True)
     water_temperature = Input("K", "temperature of the water", start=293.15, optional=True)
+    angle = Input("rad", "angles that parts measure", axes=_axes("a", GROUP), optional=True)
+    distance = Input("m", "distances that parts measure", axes=_axes("d", GROUP), optional=True)
+    temperature = Input(
+        "K",
+        "temperatures that parts measure",
+        axes=_axes("t", GROUP),
+        start=(293.15,) * GROUP,
+        optional=True,
+    )
     receiver = Input(
         "s", "pulses of the RC receiver's channels, 0 for none", axes=_axes("c"), optional=True
     )

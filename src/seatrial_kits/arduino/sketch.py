@@ -10,6 +10,7 @@ from pathlib import Path
 from seatrial.errors import InputError
 
 from .libraries import SOURCES, compiled, files_of, find_libraries, read_source
+from .platformio import FILE, Project, project_of, read_project
 from .prototypes import with_prototypes
 
 _INOS = (".ino", ".pde")
@@ -32,6 +33,8 @@ class Sketch:
     """Folders with the headers of the libraries that it includes."""
     flags: tuple[str, ...] = ()
     """Options of the compiler, for the sketch, its libraries and the core."""
+    project: Project | None = None
+    """The environment of PlatformIO that it is one of."""
 
     def merged(self) -> str:
         """Return the C++ file of all tabs, with prototypes; errors name the tabs' lines."""
@@ -52,14 +55,22 @@ class Sketch:
         return [*self.tabs, *self.own_files(), *theirs]
 
 
-def find_sketch(place: str | Path, libraries: str = "", flags: str = "") -> Sketch:
+def find_sketch(
+    place: str | Path, libraries: str = "", flags: str = "", environment: str = ""
+) -> Sketch:
     """Return the sketch of a folder, of its ``.ino``, or of the ``.cpp`` with its ``setup()``.
+
+    A folder with a ``platformio.ini``, or that file, is a project: see `read_project`.
 
     Libraries are searched in the folders of ``libraries`` (see `read_library_folders`), then in
     ``libraries`` in the sketch's folder and beside it. Raises InputError if there is no sketch,
     and for files that cannot be read.
     """
     path = Path(place).expanduser()
+    if file := project_of(path):
+        return _of_project(read_project(file, environment), libraries, flags)
+    if environment:
+        raise InputError(f"environment: {place} has no platformio.ini: leave it out")
     folder = (path if path.is_dir() else path.parent).resolve()
     main = path.resolve() if path.is_file() else _main(folder)
     if main is None or main.suffix not in (*_INOS, *SOURCES):
@@ -81,6 +92,30 @@ def find_sketch(place: str | Path, libraries: str = "", flags: str = "") -> Sket
     except OSError as error:
         raise InputError(f"{place}: cannot be read: {error}") from None
     return Sketch(main.stem, folder, tabs, tuple(sources), found, read_flags(flags))
+
+
+def _of_project(project: Project, libraries: str, flags: str) -> Sketch:
+    """Return the sketch of an environment of a project."""
+    folder = project.sources
+    if not folder.is_dir():
+        raise InputError(f"{project.folder / FILE}: there is no folder of sources {folder}")
+    files = files_of(folder)
+    tabs = tuple(sorted(f for f in folder.iterdir() if f.suffix in _INOS))
+    headers = [file for each in project.headers for file in files_of(each)]
+    shelves = [*read_library_folders(libraries, folder), *project.shelves]
+    found = find_libraries([*tabs, *files, *headers], [*project.headers, *shelves])
+    own = tuple(f for f in project.headers if f != folder)
+    more = tuple(f for f in found if f not in own)
+    sources = tuple(f for f in files if f.suffix in SOURCES)
+    return Sketch(
+        project.folder.name,
+        folder,
+        tabs,
+        sources,
+        (*own, *more),
+        (*project.flags, *read_flags(flags)),
+        project,
+    )
 
 
 def read_library_folders(text: str, folder: Path) -> tuple[Path, ...]:

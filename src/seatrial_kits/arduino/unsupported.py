@@ -3,38 +3,24 @@
 from __future__ import annotations
 
 import re
+import shlex
+import subprocess
 from collections import Counter
 from pathlib import Path
 
-from .libraries import ASSEMBLY, header_by_folder, included, read_source
+from .libraries import ASSEMBLY, included, read_source
 from .resources import TEXTS
 from .sketch import Sketch
+from .target_board import unconditional
 from .tokens import tokens
 
 _ELSE = "use the back end simavr, or"
 
-_STANDARD = (
-    "assert.h",
-    "ctype.h",
-    "errno.h",
-    "float.h",
-    "inttypes.h",
-    "limits.h",
-    "math.h",
-    "stdarg.h",
-    "stdbool.h",
-    "stddef.h",
-    "stdint.h",
-    "stdio.h",
-    "stdlib.h",
-    "string.h",
-    "new.h",
-    "WProgram.h",
-)
+_HARDWARE = ("avr/", "util/")
 _REGISTERS = re.compile(
     r"(?:PORT|DDR|PIN)[A-L]\d?|TCCR\d[ABC]|TCNT\d[HL]?|OCR\d[ABC]?[HL]?|ICR\d[HL]?|TIMSK\d|TIFR\d"
     r"|ADMUX|ADCSR[AB]|ADC[HLW]?|DIDR\d|UCSR\d[ABC]|UBRR\d[HL]?|UDR\d|SP[CSD]R|TW[BSDAC]R|TWAMR"
-    r"|EICR[AB]|EIMSK|EIFR|PCICR|PCMSK\d|PCIFR|MCUCR|SMCR|PRR\d?|WDTCSR|SREG|ACSR|GTCCR"
+    r"|EICR[AB]|EIMSK|EIFR|PCICR|PCMSK\d|PCIFR|MCUCR|SMCR|PRR\d?|WDTCSR|ACSR|GTCCR"
     r"|EECR|EEDR|EEAR[HL]?|SPH|SPL|_SFR_\w+|RAMEND"
 )
 _WORDS = {
@@ -42,12 +28,6 @@ _WORDS = {
     "SIGNAL": "interrupt routines of the hardware are the emulator's: attachInterrupt has edges",
     "asm": "machine code of the AVR",
     "__asm__": "machine code of the AVR",
-    "tone": "sounds",
-    "noTone": "sounds",
-    "portInputRegister": "ports as registers: digitalRead reads a pin",
-    "portOutputRegister": "ports as registers: digitalWrite drives a pin",
-    "digitalPinToPort": "ports as registers: digitalWrite drives a pin",
-    "digitalPinToBitMask": "ports as registers: digitalWrite drives a pin",
     "__heap_start": "the board's memory",
     "__brkval": "the board's memory",
 }
@@ -67,9 +47,11 @@ def unsupported(sketch: Sketch) -> list[str]:
         if file.suffix in ASSEMBLY:
             problems.append(f"{file}:1: {_WORDS['asm']}; use the back end simavr")
             continue
-        source = _unconditional(read_source(file))
+        source = unconditional(read_source(file))
         for header, line in included(source):
-            if not _has(sketch, file, header):
+            places = (file.parent, sketch.folder, *sketch.libraries)
+            own = any((place / header).is_file() for place in places)
+            if header.startswith(_HARDWARE) and f"core/{header}" not in TEXTS and not own:
                 problems.append(f"{file}:{line}: {_missing(header)}")
         words = [t for t in tokens(source) if t.kind == "word" and _unknown(t.text)]
         counts = Counter(token.text for token in words)
@@ -98,28 +80,45 @@ def _unknown(word: str) -> str:
     return f"{word}: {_WORDS[word]}; {_ELSE} leave it out" if word in _WORDS else ""
 
 
-def _unconditional(source: str) -> str:
-    """Return a source without what lies between #if and #endif; lines stay as they are."""
-    lines, depth = source.split("\n"), 0
-    for number, line in enumerate(lines):
-        directive = line.lstrip().lstrip("#").lstrip() if line.lstrip().startswith("#") else ""
-        depth -= directive.startswith("endif")
-        if depth > 0:
-            lines[number] = ""
-        depth += directive.startswith("if")
-    return "\n".join(lines)
+def missing_headers(sketch: Sketch, command: list[str], main: Path) -> list[str]:
+    """Return the headers that are included and not there, a line each: ``FILE:LINE: WHAT``.
+
+    ``command`` is the compiler with its options, and ``main`` the file of the joined tabs. The
+    preprocessor evaluates the conditions around them, and names all at once.
+    """
+    absent: list[str] = []
+    for source in [main, *sketch.others, *sketch.library_sources()]:
+        if source.suffix in ASSEMBLY:
+            continue
+        done = subprocess.run(
+            [*command, "-M", "-MG", str(source)], capture_output=True, text=True, check=False
+        )
+        headers = shlex.split(done.stdout.replace("\\\n", " ").partition(":")[2])
+        absent += [each for each in headers if not Path(each).exists()]
+    needs = sketch.project.needs if sketch.project else ()
+    more = (
+        [f"platformio.ini needs {', '.join(needs)}: 'pio pkg install' brings them"] if needs else []
+    )
+    return [
+        f"{place}: {_missing(header)}"
+        for header in dict.fromkeys(absent)
+        for place in _includes(sketch, header)[:1]
+    ] + (more if absent else [])
 
 
-def _has(sketch: Sketch, file: Path, header: str) -> bool:
-    if header in _STANDARD or f"core/{header}" in TEXTS:
-        return True
-    places = (file.parent, sketch.folder, *sketch.libraries)
-    return any((f / header).is_file() or header_by_folder(f, header) for f in places)
+def _includes(sketch: Sketch, header: str) -> list[str]:
+    """Return the places, FILE:LINE, where a header is included."""
+    found = []
+    for file in sketch.files():
+        if file.suffix not in ASSEMBLY:
+            lines = [line for name, line in included(read_source(file)) if name == header]
+            found += [f"{file}:{line}" for line in lines]
+    return found or [str(sketch.folder)]
 
 
 def _missing(header: str) -> str:
     """Return what to do if there is no such header."""
-    if header.startswith(("avr/", "util/")):
+    if header.startswith(_HARDWARE):
         return f"<{header}> is of the AVR's hardware: {_ELSE} the Arduino API"
     return (
         f"the library of <{header}> is not there: put its folder into 'libraries' in or beside "

@@ -7,11 +7,9 @@ from dataclasses import dataclass
 from seatrial.errors import InputError, unknown
 
 from .mcus import MCUS, Mcu
+from .parts.shelf import is_part, known_part, part_names
 
-UARTS, SERVOS, OTHERS, STEPPERS, BLOCKS = 4, 12, 8, 4, 6
-PARTS = {"mpu6050": 1, "hmc5883l": 2, "ms5837": 3, "pixy": 4}
-"""I2C devices, by the numbers of ``shared/parts.h``."""
-
+UARTS, SERVOS, OTHERS, STEPPERS, BLOCKS, GROUP = 4, 12, 8, 4, 6, 4
 _NUMBERED = {
     "servo": SERVOS,
     "pwm": OTHERS,
@@ -36,6 +34,20 @@ class Wire:
     place: int
     number: int = 0
     factor: float = 1.0
+    at: str = ""
+    """Of a part: ``address``, ``pin`` or ``uart``."""
+    more: tuple[int, ...] = ()
+    """A part's pins besides the first."""
+
+    def taken(self) -> set[tuple[str, int]]:
+        """Return the places that it takes, by what they are."""
+        return {(self.at or "pin", place) for place in (self.place, *self.more)}
+
+    def __str__(self) -> str:
+        place = (
+            f"0x{self.place:02x}" if self.at == "address" else f"{self.at or 'pin'} {self.place}"
+        )
+        return f"{place}: {self.kind} {self.number or ''}".rstrip()
 
 
 def read_wires(text: str, mcu: Mcu = MCUS["atmega2560"]) -> list[Wire]:
@@ -46,9 +58,9 @@ def read_wires(text: str, mcu: Mcu = MCUS["atmega2560"]) -> list[Wire]:
     wires: list[Wire] = []
     for part in filter(None, (each.strip() for each in text.split(";"))):
         wire = _wire(part, mcu)
-        if any((w.place, w.kind in PARTS) == (wire.place, wire.kind in PARTS) for w in wires):
+        if any(w.taken() & wire.taken() for w in wires):
             raise InputError(f"wires: {part!r}: this place is used twice")
-        if any((w.kind, w.number) == (wire.kind, wire.number) for w in wires):
+        if not wire.at and any((w.kind, w.number) == (wire.kind, wire.number) for w in wires):
             raise InputError(f"wires: {part!r}: there is a {wire.kind} {wire.number or ''} already")
         wires.append(wire)
     return wires
@@ -56,21 +68,36 @@ def read_wires(text: str, mcu: Mcu = MCUS["atmega2560"]) -> list[Wire]:
 
 def _wire(part: str, mcu: Mcu) -> Wire:
     place, kind, *more = part.split() if " " in part else (part, "")
-    if kind not in (*_NUMBERED, *_FACTORS, *PARTS):
-        raise InputError(
-            f"wires: {part!r}: {unknown('kind', kind, [*_NUMBERED, *_FACTORS, *PARTS])}"
-        )
+    if kind not in (*_NUMBERED, *_FACTORS) and not is_part(kind):
+        known = [*_NUMBERED, *_FACTORS, *part_names()]
+        raise InputError(f"wires: {part!r}: {unknown('kind', kind, known)}")
     if len(more) > 1:
         raise InputError(f"wires: {part!r} has too many words: PLACE KIND NUMBER is needed")
     try:
-        if kind in PARTS:
-            return Wire(kind, _within(int(place, 16), 0x08, 0x77))
+        if is_part(kind):
+            return _part(kind, place, int(more[0]) if more else 0, mcu)
         at = mcu.pin(place)
         if kind in _FACTORS:
             return Wire(kind, at, 0, float(more[0]) if more else _FACTORS[kind])
         return Wire(kind, at, _within(int(more[0]), 1, _NUMBERED[kind]))
     except (ValueError, IndexError) as error:
         raise InputError(f"wires: {part!r} is not 'PLACE {kind} NUMBER': {error}") from None
+
+
+def _part(kind: str, place: str, number: int, mcu: Mcu) -> Wire:
+    """Return the wire of a part: at an address of I2C, at pins, or at a UART."""
+    known = known_part(kind)
+    if known is not None and known.address != place.lower().startswith("0x"):
+        wanted = "an address, as 0x68" if known.address else "a pin"
+        raise ValueError(f"{wanted} is needed, not {place!r}")
+    if place.lower().startswith("0x"):
+        return Wire(kind, _within(int(place, 16), 0x08, 0x77), number, at="address")
+    if place.startswith("uart"):
+        return Wire(kind, _within(int(place[4:]), 0, UARTS - 1), number, at="uart")
+    first, *others = (mcu.pin(each) for each in place.split(","))
+    if known is not None and 1 + len(others) != known.pins:
+        raise ValueError(f"{known.pins} pins are needed, with commas between, not {place!r}")
+    return Wire(kind, first, number, at="pin", more=tuple(others))
 
 
 def _within(value: int, least: int, most: int) -> int:

@@ -40,6 +40,9 @@ typedef struct { /* what one thread does, for copies from `first`, before `last`
     Batch *batch;
     Work *work;
     int64_t first, last, steps;
+    const uint32_t *references;
+    int64_t count;
+    double *rows; /* of each copy `steps` rows of `count` values; NULL: none is kept */
 } Share;
 
 /* ------------------------------------------------------------------ copies */
@@ -154,6 +157,17 @@ EXPORTED void batch_start(Batch *batch, const uint8_t *mask, const uint32_t *ref
     }
 }
 
+/* Step a copy and keep a row after each step, up to the one that fails. */
+static void record(const Share *share, int64_t i) {
+    Copy *copy = share->batch->copies + i;
+    double *row = share->rows + i * share->steps * share->count;
+    for (int64_t k = 0; k < share->steps && !copy->failed; k++, row += share->count) {
+        check(copy, fmi2DoStep(copy->rig, (double)(copy->steps * STEP_NS) / 1e9, STEP_NS / 1e9, 1));
+        copy->steps++;
+        if (!copy->failed) check(copy, rig_read(copy->rig, share->references, (size_t)share->count, row));
+    }
+}
+
 static void *worked(void *given) {
     const Share *share = given;
     const double h = (double)(share->steps * STEP_NS) / 1e9;
@@ -161,14 +175,20 @@ static void *worked(void *given) {
         Copy *copy = share->batch->copies + i;
         if (copy->failed) continue;
         rig_lend(copy->rig, share->work);
-        check(copy, fmi2DoStep(copy->rig, (double)(copy->steps * STEP_NS) / 1e9, h, 1));
+        if (share->rows) {
+            record(share, i);
+        } else {
+            check(copy, fmi2DoStep(copy->rig, (double)(copy->steps * STEP_NS) / 1e9, h, 1));
+            copy->steps += share->steps;
+        }
         rig_lend(copy->rig, share->batch->works[0]);
-        copy->steps += share->steps;
     }
     return NULL;
 }
 
-EXPORTED void batch_step(Batch *batch, int64_t steps, int64_t threads) {
+/* Let copies take steps; `rows`, if it is not NULL, gets `count` values after each, copy by copy. */
+EXPORTED void batch_step(Batch *batch, int64_t steps, int64_t threads, const uint32_t *references,
+                         int64_t count, double *rows) {
     Share shares[MOST_THREADS];
 #if defined(_WIN32)
     threads = 1;
@@ -183,6 +203,7 @@ EXPORTED void batch_step(Batch *batch, int64_t steps, int64_t threads) {
     }
     for (int64_t k = 0; k < threads; k++) {
         shares[k].batch = batch, shares[k].steps = steps;
+        shares[k].references = references, shares[k].count = count, shares[k].rows = rows;
         shares[k].first = batch->count * k / threads;
         shares[k].last = batch->count * (k + 1) / threads;
     }

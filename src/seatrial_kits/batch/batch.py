@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import ArrayLike, NDArray
 
+    from seatrial.trial.files.trial import Trial
     from seatrial_kits.native.surroundings import Met
 
     Floats = NDArray[np.float64]
@@ -34,11 +35,12 @@ class BatchState:
 
 
 class Batch:
-    """``count`` copies of a rig, all in compiled code, that the caller steps together.
+    """``count`` copies of a rig or a trial, all in compiled code, that the caller steps together.
 
     ``rig``, ``set``, ``variant``, ``step`` and ``choices`` are those of `seatrial.Simulation`; a
-    value of ``set`` may also be an array with a row for each copy. ``seed`` is the first copy's,
-    the next has the next one, or a sequence with a seed for each. ``threads`` share the copies.
+    value of ``set`` may also be an array with a row for each copy. ``seed`` is the first copy's
+    (None: the trial's, or 1), the next has the next one, or a sequence with a seed for each.
+    ``threads`` share the copies. Of a trial's faults a copy has those that fix an output.
 
     Copy i has the bytes of a `Simulation` with ``engine="native"``, its seed and its settings, on
     any number of threads. A copy that fails keeps its values and its message (`failures`) and is
@@ -50,11 +52,11 @@ class Batch:
 
     def __init__(
         self,
-        rig: str | Path,
+        rig: str | Path | Trial,
         count: int,
         *,
         set: Mapping[str, Any] | None = None,
-        seed: int | Sequence[int] = 1,
+        seed: int | Sequence[int] | None = None,
         variant: str | None = None,
         step: float | str | None = None,
         choices: Mapping[str, str] | None = None,
@@ -62,23 +64,33 @@ class Batch:
     ) -> None:
         import numpy as np
 
+        from .course import Course
         from .program import program_of
-        from .settings import Settings, give_built_in, take_weather
+        from .settings import Settings, first_of, give_built_in, is_weather, take_weather
 
         if count < 1:
             raise InputError(f"Batch: the count is {count}, at least 1 is needed")
         if not 1 <= threads <= MOST_THREADS:
             raise InputError(f"Batch: threads is {threads}, allowed 1 to {MOST_THREADS}")
         self.count, self.threads = count, threads
-        self.seeds = self._seeds(seed)
-        """Of each copy."""
-        self.system = assembled(rig, variant=variant, engine="native", step=step, choices=choices)
+        given = dict(set or {})
+        weather_keys = {
+            key: first_of(value, count) for key, value in given.items() if is_weather(key)
+        }
+        made = assembled(
+            rig, weather_keys, variant=variant, engine="native", step=step, choices=choices
+        )
+        self.made, self.system = made, made.system
         try:
-            of_copies = give_built_in(self.system, set or {})
+            self.seeds = self._seeds(made.system.seed if seed is None else seed)
+            """Of each copy."""
+            rest = {k: v for k, v in given.items() if np.ndim(v) or not is_weather(k)}
+            of_copies = give_built_in(made, rest)
             weather = take_weather(self.system)
             program = program_of(self.system)
-            self._settings = Settings(self.system, program.references, count, weather)
+            self._settings = Settings(made, program.references, count, weather)
             self._settings.change(of_copies, "set")
+            self._course = Course(made, program.step_ns)
         except BaseException:
             self.system.discard()
             raise
@@ -109,7 +121,36 @@ class Batch:
         self._refuse_closed()
         if count < 0:
             raise InputError(f"step: the count is {count}, it cannot be negative")
-        self._library.batch_step(self._batch, count, min(self.threads, self.count))
+        before, failed = self._times()
+        while count and not failed.all():
+            ahead = self._course.ahead(before[~failed], count)
+            self._advance(ahead, None, None)
+            count -= ahead
+            before, failed = self._acted(before)
+
+    def record(self, count: int, *names: str) -> Floats:
+        """Take ``count`` communication steps, and return values after each, as `get` names them.
+
+        Shape (copies, count, elements); NaN from the step on in which a copy fails. Raises
+        InputError.
+        """
+        import numpy as np
+
+        self._refuse_closed()
+        references = self._settings.read(names)
+        blocks, (before, failed) = [np.empty((self.count, 0, len(references)))], self._times()
+        while count > 0:
+            ahead = count if failed.all() else self._course.ahead(before[~failed], count)
+            rows = np.full((self.count, ahead, len(references)), np.nan)
+            self._advance(ahead, references, rows)
+            count -= ahead
+            before, failed = self._acted(before)
+            if self._course:  # the last row has what events of its time have made of it
+                last = np.empty((self.count, len(references)))
+                self._library.batch_get(self._batch, _at(references), len(references), _at(last))
+                rows[~failed, -1] = last[~failed]
+            blocks.append(rows)
+        return np.concatenate(blocks, axis=1)
 
     @property
     def failures(self) -> dict[int, str]:
@@ -185,6 +226,12 @@ class Batch:
         self._library.batch_override(
             self._batch, _at(chosen), _at(references), len(references), None
         )
+
+    def is_built_in(self, name: str) -> bool:
+        """Say if a value is part of the program, so that `reset` refuses it. Raises InputError."""
+        from .settings import is_built_in
+
+        return any(is_built_in(self.made, each) for each in self.made.named(name))
 
     # ------------------------------------------------------------------ life
 
@@ -276,6 +323,22 @@ class Batch:
 
     # ------------------------------------------------------------------ inside
 
+    def _advance(
+        self, count: int, references: NDArray[np.uint32] | None, rows: Floats | None
+    ) -> None:
+        wanted = 0 if references is None else len(references)
+        places = [None if array is None else _at(array) for array in (references, rows)]
+        threads = min(self.threads, self.count)
+        self._library.batch_step(self._batch, count, threads, places[0], wanted, places[1])
+
+    def _acted(self, before: NDArray[np.int64]) -> tuple[NDArray[np.int64], NDArray[np.bool_]]:
+        """Let events of the copies' times happen; return the steps of each, and which failed."""
+        steps, failed = self._times()
+        if self._course:
+            self._course.act(self, steps, steps > before)
+            failed = self._times()[1]
+        return steps, failed
+
     def _start(self, chosen: NDArray[np.bool_]) -> None:
         references, values = self._settings.rows(self.seeds)
         for name, met in self._settings.surroundings(chosen).items():
@@ -288,6 +351,7 @@ class Batch:
                 raise InputError(
                     f"{self.system.rig.read_from.path}: copy {number} cannot start: {why}"
                 )
+        self._course.act(self, self._times()[0], chosen)
 
     def _surround(self, name: str, chosen: NDArray[np.bool_], met: Sequence[Met | None]) -> None:
         """Let a plant meet what surrounds it, in each chosen copy."""

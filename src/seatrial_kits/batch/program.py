@@ -66,7 +66,7 @@ def _loaded(path: Path) -> ctypes.CDLL:
     found.batch_start.argtypes = found.batch_set.argtypes = values
     found.batch_override.argtypes = values
     found.batch_get.argtypes = [_POINTER, _POINTER, _COUNT, _POINTER]
-    found.batch_step.argtypes = [_POINTER, _COUNT, _COUNT]
+    found.batch_step.argtypes = [_POINTER, _COUNT, _COUNT, _POINTER, _COUNT, _POINTER]
     found.batch_message.restype = ctypes.c_char_p
     found.batch_message.argtypes = [_POINTER, _COUNT]
     found.batch_times.argtypes = [_POINTER, _POINTER, _POINTER]

@@ -9,18 +9,23 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from seatrial.api.assembling import Assembled
 from seatrial.api.written import as_written
 from seatrial.errors import InputError, unknown
 from seatrial.fmi.components.source import ComponentSource, find_source
 from seatrial.fmi.instance import Variable
+from seatrial.model.plant import Plant
 from seatrial.system.component_parameters import derived_seeds, seed_of
 from seatrial.system.part import Part
 from seatrial.system.system import System
 from seatrial.system.values import check_limits, from_written, port_names, port_scalars
 from seatrial_kits.native.surroundings import Met, is_surrounded, surroundings_of
-from seatrial_kits.native.tables import WEATHER_ROLES, is_built_in
+from seatrial_kits.native.tables import WEATHER_ROLES
+from seatrial_kits.native.tables import is_built_in as built_in_port
 
 Floats = NDArray[np.float64]
+_MOST_SEAS = 256
+"""That are kept for copies to come, whatever the number of copies: some hundred kB each."""
 
 
 class Settings:
@@ -31,18 +36,20 @@ class Settings:
 
     def __init__(
         self,
-        system: System,
+        made: Assembled,
         references: Mapping[str, int],
         count: int,
         weather: Mapping[str, Mapping[str, str]],
     ) -> None:
-        self._system, self._references, self._count = system, references, count
+        self._made, self._references, self._count = made, references, count
+        self._system = system = made.system
         self._weather = weather
         self._sources = {part.name: _source(system, part) for part in system.parts.values()}
         self._rows: dict[str, Floats] = {}
         """What was set, by scalar, each (count,)."""
         self._met: dict[tuple[Any, ...], Met | None] = {}
         self._seeded: tuple[NDArray[np.int64], dict[str, Floats]] = (np.empty(0, np.int64), {})
+        self._known: dict[tuple[str, ...], NDArray[np.uint32]] = {}
 
     # ------------------------------------------------------------------ names
 
@@ -52,8 +59,12 @@ class Settings:
 
     def read(self, names: Sequence[str]) -> NDArray[np.uint32]:
         """Return the references of outputs, open inputs and parameters. Raises InputError."""
-        found = [name for given in names for name, _ in self._scalars(given, "get")]
-        return np.array([self._references[name] for name in found], dtype=np.uint32)
+        known = self._known.get(tuple(names))
+        if known is None:
+            found = [name for given in names for name, _ in self._scalars(given, "get")]
+            known = np.array([self._references[name] for name in found], dtype=np.uint32)
+            self._known[tuple(names)] = known
+        return known
 
     def _scalars(self, name: str, call: str) -> list[tuple[str, Variable]]:
         part, port = self._system.located(name, call)[0]
@@ -143,7 +154,8 @@ class Settings:
         Raises InputError, and changes nothing then.
         """
         changed: dict[str, Floats] = {}
-        for name, value in settings.items():
+        named = {name: value for key, value in settings.items() for name in self._made.named(key)}
+        for name, value in named.items():
             given = self.given(name, value, call)
             for whole, scalar in self._scalars(name, call):
                 if _is_built_in(self._system, whole, scalar):
@@ -170,12 +182,18 @@ class Settings:
 
     def rows(self, seeds: NDArray[np.int64]) -> tuple[NDArray[np.uint32], Floats]:
         """Return references and rows of values that copies with these seeds start with."""
-        if not np.array_equal(seeds, self._seeded[0]):
-            self._seeded = seeds.copy(), self._of_seeds(seeds)
-        return self._stacked(self._seeded[1] | self._rows)
+        known, rows = self._seeded
+        other = np.ones(len(seeds), dtype=bool) if not len(known) else seeds != known
+        if other.any():
+            for name, values in self._of_seeds(seeds[other]).items():
+                rows.setdefault(name, np.empty(self._count))[other] = values
+            self._seeded = seeds.copy(), rows
+        return self._stacked(rows | self._rows)
 
     def surroundings(self, mask: NDArray[np.bool_]) -> dict[str, list[Met | None]]:
         """Return what surrounds each plant that can meet weather, in each copy of the mask.
+
+        `rows` has said the seeds of the copies.
 
         Raises InputError for a sea, a current or a wind that cannot be.
         """
@@ -188,9 +206,10 @@ class Settings:
             values |= self._weather[name]
             changed = {
                 whole.removeprefix(f"{name}."): rows
-                for whole, rows in self._rows.items()
+                for whole, rows in (self._seeded[1] | self._rows).items()
                 if whole.startswith(f"{name}.")
                 and whole.removeprefix(f"{name}.") in part.instance.variables
+                and _is_met(source, part.instance.variables[whole.removeprefix(f"{name}.")])
             }
             found[name] = [
                 self._meets(name, source, {**values, **{k: v[i] for k, v in changed.items()}})
@@ -203,14 +222,15 @@ class Settings:
     def _meets(self, name: str, source: ComponentSource, values: dict[str, Any]) -> Met | None:
         key = name, *sorted(values.items(), key=lambda item: item[0])
         if key not in self._met:
-            if len(self._met) > 4 * self._count:
+            if len(self._met) > max(_MOST_SEAS, 4 * self._count):
                 self._met.clear()  # those in use are kept by the copies
             self._met[key] = surroundings_of(source, values)
         return self._met[key]
 
     def _of_seeds(self, seeds: NDArray[np.int64]) -> dict[str, Floats]:
         """Return the seeds of components, as `give_parameters` derives them from a system's."""
-        found: dict[str, Floats] = {}
+        of_weather = seeds.astype(np.float64)
+        found: dict[str, Floats] = dict.fromkeys(self._made.weather_seeds, of_weather)
         for part in self._system.parts.values():
             for name, owner in derived_seeds(part).items():
                 own = [seed_of(owner, seed) for seed in seeds.tolist()]
@@ -238,20 +258,37 @@ def _require_type(scalar: Variable, numbers: Floats, origin: str) -> None:
         )
 
 
-def give_built_in(system: System, settings: Mapping[str, Any]) -> dict[str, Any]:
+def is_weather(key: str) -> bool:
+    """Say if a key is one of a trial's sea, current or wind."""
+    return key.partition(".")[0] in WEATHER_ROLES
+
+
+def first_of(value: Any, count: int) -> Any:
+    """Return a setting of the first copy, where a value has a row for each."""
+    rows = np.asarray(value)
+    return value if rows.dtype.kind not in "fiub" or rows.shape[:1] != (count,) else rows[0]
+
+
+def give_built_in(made: Assembled, settings: Mapping[str, Any]) -> dict[str, Any]:
     """Give a system what is built into its program, and return what its copies can each have.
 
     Raises InputError for what does not fit.
     """
     rest: dict[str, Any] = {}
-    for name, value in settings.items():
-        part, port = system.located(name, "set")[0]
-        scalars = port_scalars(part.instance.variables, port)
-        if scalars and _is_built_in(system, f"{part.name}.{scalars[0].name}", scalars[0]):
-            system.set(name, as_written(value), "set")
-        else:
-            rest[name] = value
+    for key, value in settings.items():
+        for name in made.named(key):
+            if is_built_in(made, name):
+                made.system.set(name, as_written(value), "set")
+            else:
+                rest[name] = value
     return rest
+
+
+def is_built_in(made: Assembled, name: str) -> bool:
+    """Say if a port's value is part of the program. Raises InputError for a name that is none."""
+    part, port = made.system.located(name, "set")[0]
+    scalars = port_scalars(part.instance.variables, port)
+    return bool(scalars) and _is_built_in(made.system, f"{part.name}.{scalars[0].name}", scalars[0])
 
 
 def take_weather(system: System) -> dict[str, dict[str, str]]:
@@ -276,7 +313,17 @@ def _is_built_in(system: System, whole: str, scalar: Variable) -> bool:
     if not isinstance(source, ComponentSource):
         return False
     cls = source.component_class()
-    return is_built_in(cls, cls.scalar_by_name[scalar.name].port, surrounded=is_surrounded(source))
+    return built_in_port(
+        cls, cls.scalar_by_name[scalar.name].port, surrounded=is_surrounded(source)
+    )
+
+
+def _is_met(source: ComponentSource, scalar: Variable) -> bool:
+    """Say if what surrounds a plant can depend on a value: not on inputs, nor where it starts."""
+    cls = source.component_class()
+    assert issubclass(cls, Plant)
+    starts = {f"{state.name}_start" for state in cls.state_ports}
+    return scalar.causality == "parameter" and scalar.name.partition(".")[0] not in starts
 
 
 def _folder(system: System, part: Part) -> Path:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ctypes
+import threading
 from collections.abc import Callable, Mapping
 from typing import Any, cast
 
@@ -44,9 +45,12 @@ def surroundings_of(source: ComponentSource, values: Mapping[str, Any]) -> Met |
 
 
 def _called(met: Surroundings, states: int) -> Met:
+    alone = threading.Lock()  # copies share it, and NumPy lets other threads run amid a product
+
     def call(t: float, state: int, to: int) -> int:
         x = np.ctypeslib.as_array((ctypes.c_double * states).from_address(state))
-        found = met(t, x)
+        with alone:
+            found = met(t, x)
         ctypes.memmove(to, found.ctypes.data, found.nbytes)
         return 1  # an exception, which ctypes shows, is 0
 

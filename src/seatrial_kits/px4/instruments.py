@@ -25,6 +25,7 @@ from collections.abc import Sequence
 
 from pymavlink.dialects.v20 import all as mavlink
 
+from seatrial.links.atmosphere import LAPSE, SEA_LEVEL_K, standard_pressure
 from seatrial.links.earth_field import earth_field
 from seatrial.links.geodesy import Ned, Origin
 from seatrial.links.parameter_validation import start_us
@@ -40,16 +41,10 @@ from .ports import Px4Ports, read_measured
 ACCELEROMETER, GYRO, FIELD, PRESSURE = 0x7, 0x38, 0x1C0, 0x1A00
 """What a HIL_SENSOR has new, in its ``fields_updated``."""
 _GAUSS_PER_TESLA, _PA_PER_HPA = 1e4, 100.0
-_SEA_LEVEL_PA, _SEA_LEVEL_K, _LAPSE, _EXPONENT = 101_325.0, 288.15, 0.0065, 5.25588
 _CELSIUS = 273.15
 _FIX_3D = 3
 _NORMALS = 16
 """Random numbers of a sample: 3 of each inertial quantity and of the field, 1, 3 and 3."""
-
-
-def air_pressure(altitude: float) -> float:
-    """Return the pressure of the standard atmosphere at an altitude, m, in Pa."""
-    return float(_SEA_LEVEL_PA * (1.0 - _LAPSE * altitude / _SEA_LEVEL_K) ** _EXPONENT)
 
 
 class Clock:
@@ -113,8 +108,8 @@ class Instruments:
         else:
             field = _noisy(to_body(truth.attitude, self._field_n), of.field_noise, normal[6:])
         altitude = of.altitude - truth.position_n[2]
-        pressure = air_pressure(altitude) + of.pressure_noise * normal[9]
-        celsius = _SEA_LEVEL_K - _CELSIUS - _LAPSE * altitude
+        pressure = standard_pressure(altitude) + of.pressure_noise * normal[9]
+        celsius = SEA_LEVEL_K - _CELSIUS - LAPSE * altitude
         gauss = [_GAUSS_PER_TESLA * each for each in field]
         hpa = pressure / _PA_PER_HPA
         return mavlink.MAVLink_hil_sensor_message(

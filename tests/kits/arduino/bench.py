@@ -36,9 +36,15 @@ def write_sketch(folder: Path, source: str, name: str = "one", **others: str) ->
 class Bench:
     """A board at the start of its run."""
 
-    def __init__(self, sketch: Path | str, backend: str = "host", **values: object) -> None:
+    def __init__(
+        self,
+        sketch: Path | str,
+        backend: str = "host",
+        board: type[Arduino] = Arduino,
+        **values: object,
+    ) -> None:
         need(backend)
-        self.one = Arduino("mega")
+        self.one = board("mega")
         for name, value in {"backend": backend, "sketch": str(sketch), **values}.items():
             self.one.set(name, value)
         self.one.initialise()

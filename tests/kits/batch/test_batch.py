@@ -12,7 +12,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from seatrial import Batch, InputError, Simulation
+from seatrial import Batch, InputError, Simulation, run_trial
 
 pytestmark = [
     pytest.mark.slow,  # the compiler takes seconds
@@ -346,4 +346,92 @@ def test_shipped_rigs_have_the_bytes_of_single_runs(name: str) -> None:
     for i in (0, 2):
         with Simulation(name, engine="native", seed=4 + i) as one:
             one.step(150)
+            assert [float(one.get(n)) for n in names] == found[i].tolist()
+
+
+TRIAL = """
+rig = "cork.toml"
+stop = "1 s"
+seed = 4
+[set]
+"cork.mass" = "3 kg"
+[[events]]
+at = "0 s"
+set = { "pilot.wanted" = "50 cm" }
+[[events]]
+at = "100 ms"
+set = { "pilot.wanted" = 1.0, "pilot.gain" = "2 N/m" }
+[[faults]]
+what = "fixed"
+where = "pilot.force"
+value = "0.5 N"
+at = "150 ms"
+for = "70 ms"
+"""
+
+
+def test_copies_of_a_trial_have_its_events_and_faults(rig: Path) -> None:
+    path = rig.with_name("trial.toml")
+    path.write_text(TRIAL, "utf-8")
+    with Batch(path, 3, seed=[4, 4, 9]) as batch:
+        names = list(batch.signals)
+        batch.step(12)
+        batch.reset(np.array([False, True, False]))
+        batch.step(28)
+        found = batch.get(*names)
+    for i, (seed, steps) in enumerate([(None, 40), (4, 28), (9, 40)]):
+        with Simulation(path, engine="native", seed=seed) as one:
+            one.step(steps)
+            assert everything(one) == found[i].tolist()
+    trial = run_trial(path, out=rig.parent / "run", set={"stop": "0.4 s"})
+    last = [float(trial.signals[name][-1]) for name in names]
+    assert last == found[0].tolist()
+
+
+def test_a_simulation_of_a_trial_starts_anew_with_its_events(rig: Path) -> None:
+    path = rig.with_name("trial.toml")
+    path.write_text(TRIAL, "utf-8")
+    with Simulation(path) as one:
+        assert one.get("pilot.wanted") == 0.5
+        one.step(9)
+        assert one.get("pilot.wanted") == 0.5
+        one.step(6)
+        assert one.get("pilot.wanted") == 1.0
+        assert one.get("pilot.force") == 0.5
+        early = one.save()
+        one.step(10)
+        late = everything(one)
+        one.restore(early)
+        one.step(10)
+        assert everything(one) == late
+        one.reset()
+        one.step(25)
+        assert everything(one) == late
+
+
+def test_a_fault_without_c_is_named(rig: Path) -> None:
+    path = rig.with_name("biased.toml")
+    path.write_text(TRIAL.replace('"fixed"', '"bias"'), "utf-8")
+    with pytest.raises(InputError, match=r"biased.toml: faults.0: .* 'fixed' at a fixed time"):
+        Batch(path, 2)
+
+
+def test_each_copy_of_a_trial_in_waves_has_its_own_height_and_seed() -> None:
+    heights = np.array([0.1, 0.2, 0.1])
+    with Batch("hydrone-landing-waves", 3, seed=5, set={"sea.height": heights}) as batch:
+        names = [n for n, signal in batch.signals.items() if signal.type is not str]
+        batch.step(20)
+        batch.reset(set={"sea.height": heights[::-1]}, seed=8)
+        batch.step(60)
+        found = batch.get(*names)
+        assert len({tuple(row) for row in found.tolist()}) == 3
+    for i in range(3):
+        with Simulation("hydrone-landing-waves", engine="native", seed=1) as one:
+            one.step(2)
+            one.reset(set={"sea.height": heights[2 - i]}, seed=8 + i)
+            one.step(60)
+            assert [float(one.get(n)) for n in names] == found[i].tolist()
+        settings = {"sea.height": float(heights[2 - i])}
+        with Simulation("hydrone-landing-waves", seed=8 + i, set=settings) as one:
+            one.step(60)
             assert [float(one.get(n)) for n in names] == found[i].tolist()

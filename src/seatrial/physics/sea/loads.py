@@ -25,44 +25,53 @@ _DRIFTS = [0, 1, 5]
 class WaveLoads:
     """Loads of ``waves`` on a craft: tau = sum a Re(F(w, chi) exp(i theta)), and slow drift.
 
-    F is tabulated at each component's frequency and 180 headings of the craft when this is made,
-    and interpolated in real and imaginary part between them. The wave's phase is at the craft's
-    position, so that encounter needs nothing else. Drift is Newman's (`drift`),
+    F is tabulated at each component's frequency and 180 headings of the craft, each when the craft
+    first comes near it, and interpolated in real and imaginary part between them. The wave's phase
+    is at the craft's position, so that encounter needs nothing else. Drift is Newman's (`drift`),
     Re[conj(sum a exp(i theta)) sum a D(w, chi) exp(i theta)].
     """
 
     def __init__(self, waves: Waves, response: Response, drift: Drift | None = None) -> None:
         self.waves = waves
+        self._response, self._drift = response, drift
         self._step = math.tau / _HEADINGS
-        self._drifts = drift is not None
-        headings = [waves.direction - i * self._step for i in range(_HEADINGS)]
-        by_heading = [response(waves.omega, waves.k, chi) for chi in headings]
-        per_wave = np.array(by_heading) * waves.amplitude
-        # Re(F (c + i s)) = (Re F, -Im F) (c, s): real numbers are faster.
-        table = np.concatenate([per_wave.real, -per_wave.imag], -1)
-        if drift is not None:
-            mean = np.array([drift(waves.omega, chi) for chi in headings]) * waves.amplitude
-            zero = np.zeros_like(mean)
-            parts = [np.concatenate(pair, -1) for pair in ((mean, zero), (zero, mean))]
-            table = np.concatenate([table, *parts], 1)
-        self._rows = table.shape[1]
+        self._rows = 6 if drift is None else 12
         # The rows of a heading stand above those of the next: both in one product.
-        table = np.concatenate([table, table[:1]])
-        self._table = np.ascontiguousarray(table.reshape(-1, table.shape[-1]))
+        self._table = np.empty(((_HEADINGS + 1) * self._rows, 2 * len(waves.omega)))
+        self._known = [False] * (_HEADINGS + 1)
         self._phases = Phases(waves)
         self._both = np.empty((2, self._rows))
         self._flat = self._both.reshape(-1)
         self._shares = np.empty(2)
+        self._tabulate(0)
+
+    def _tabulate(self, heading: int) -> None:
+        """Fill in the rows of a heading, by its number."""
+        waves = self.waves
+        chi = waves.direction - heading % _HEADINGS * self._step
+        per_wave = self._response(waves.omega, waves.k, chi) * waves.amplitude
+        # Re(F (c + i s)) = (Re F, -Im F) (c, s): real numbers are faster.
+        table = np.concatenate([per_wave.real, -per_wave.imag], -1)
+        if self._drift is not None:
+            mean = self._drift(waves.omega, chi) * waves.amplitude
+            zero = np.zeros_like(mean)
+            parts = [np.concatenate(pair, -1) for pair in ((mean, zero), (zero, mean))]
+            table = np.concatenate([table, *parts])
+        self._table[self._rows * heading : self._rows * (heading + 1)] = table
+        self._known[heading] = True
 
     def at(self, t: float, x: float, y: float, heading: float) -> Array:
         """Return X, Y, Z, K, M, N, N and N m in {b}, at ``t``, s, and place, m, heading, rad."""
         whole, share = divmod((heading % math.tau) / self._step, 1.0)
         cell = int(whole) % _HEADINGS
+        for near in (cell, cell + 1):
+            if not self._known[near]:
+                self._tabulate(near)
         rows = self._table[self._rows * cell : self._rows * (cell + 2)]
         rows.dot(self._phases.move(t, x, y), out=self._flat)
         self._shares[0], self._shares[1] = 1.0 - share, share
         load: Array = self._shares.dot(self._both)
-        if self._drifts:
+        if self._drift is not None:
             cosines, sines = self._phases.cosines, self._phases.sines
             a = self.waves.amplitude
             load[_DRIFTS] += a.dot(cosines) * load[6:9] + a.dot(sines) * load[9:]

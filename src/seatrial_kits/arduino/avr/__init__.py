@@ -10,5 +10,8 @@ DATA_FILES = (
     "lines.h",
     "memory.h",
     "modulation.h",
+    "pins.c",
+    "spi.h",
+    "stack.h",
     "ticks.h",
 )

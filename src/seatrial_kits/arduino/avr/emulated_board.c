@@ -6,6 +6,7 @@
 #include <avr_eeprom.h>
 #include <avr_extint.h>
 #include <avr_ioport.h>
+#include <avr_spi.h>
 #include <avr_timer.h>
 #include <avr_twi.h>
 #include <avr_uart.h>
@@ -13,6 +14,7 @@
 #include <sim_cycle_timers.h>
 
 #include "link.h"
+#include "drives.h"
 #include "parts.h"
 #include "rates.h"
 #include "waves.h"
@@ -43,6 +45,8 @@ static void end(const char *why)
     link_answer(avr ? ticks() : 0, why);
     _exit(0);
 }
+
+#include "stack.h"
 
 /* ------------------------------------------------------------------ pins */
 
@@ -101,6 +105,7 @@ static void restart_waves(void)
 }
 
 #include "i2c.h"
+#include "spi.h"
 #include "adc.h"
 
 /* ------------------------------------------------------------------ running */
@@ -120,8 +125,12 @@ static void take_input(const link_input *input)
         wave_set(index, input->kind == IN_PULSE, input->number, ticks());
         restart_waves();
         break;
-    case IN_QUANTITY: part_quantities[index % QUANTITIES] = input->number; break;
-    case IN_PART: part_add((uint8_t)input->value, index); break;
+    case IN_PART: part_add(input); watch_part(index); break;
+    case IN_REGISTER: part_set(input); break;
+    case IN_REGISTERS: part_store(input); break;
+    case IN_REPLY: part_clear(input); break;
+    case IN_DRIVE: drive_add(index % PINS, (uint8_t)input->value, (uint64_t)input->number); restart_drives(); break;
+    case IN_FORGET: drive_forget(index % PINS); restart_drives(); break;
     case IN_WATCH: watch(index); break;
     case IN_EEPROM: memory_preload(input->value, (uint8_t)input->number); break;
     }
@@ -141,12 +150,12 @@ static void crashed(void)
     unsigned address;
     const char *at = strstr(trouble, "Address ");
     if (at && sscanf(at, "Address %x", &address) == 1)
-        snprintf(text, sizeof text, "it %s address 0x%04x, beyond the memory [at 0x%x]",
-                 strstr(trouble, "write") ? "writes to" : "reads from", address, avr->pc);
+        snprintf(text, sizeof text, "it %s address 0x%04x, beyond the memory",
+                 strstr(trouble, "write") ? "writes to" : "reads from", address);
     else
         snprintf(text, sizeof text, "the microcontroller crashed: an instruction that is none, or the stack ran into "
-                 "the data [at 0x%x]", avr->pc);
-    end(text);
+                 "the data");
+    end_here(text);
 }
 
 static void was_reset(avr_t *of)
@@ -180,6 +189,7 @@ static int load(const char *file, const char *mcu)
     avr_load_firmware(avr, &firmware);
     avr->frequency = (uint32_t)CLOCK;
     avr_register_io_write(avr, CLKPR, clock_written, 0);
+    avr_register_io_write(avr, NO_PIN, no_pin, 0);
     return 1;
 }
 
@@ -188,6 +198,7 @@ int main(int count, char **arguments)
     if (count < 6)
         return 2;
     link_out = atoi(arguments[1]);
+    link_take = take_input;
     patience = (uint64_t)(atof(arguments[2]) * CLOCK);
     avr_global_logger_set(logged);
     if (!load(arguments[3], arguments[4]))
@@ -204,10 +215,11 @@ int main(int count, char **arguments)
     avr->reset = was_reset;
     hang_forget();
     connect_i2c();
+    connect_spi();
     connect_adc();
     avr->run_cycle_limit = 1000;
     for (;;) {
-        target = link_await(take_input);
+        target = link_read();
         while (ticks() < target) {
             if (!stop_set)
                 later((double)target, stop, 0);

@@ -33,8 +33,8 @@ static void hang_observe(int state)
     if (ticks() - hang_since > patience) {
         char text[200];
         snprintf(text, sizeof text, "it has run for %.3g s of its time without returning from a function or "
-                 "calling anything: an endless loop (or a wait longer than its patience) [at 0x%x]", (double)patience / CLOCK, avr->pc);
-        end(text);
+                 "calling anything: an endless loop (or a wait longer than its patience)", (double)patience / CLOCK);
+        end_here(text);
     }
 }
 

@@ -28,8 +28,7 @@ static void twi(avr_irq_t *irq, uint32_t value, void *unused)
     if (!part_open)
         return;
     if (message.u.twi.msg & TWI_COND_WRITE) {
-        avr_raise_irq(twi_input, avr_twi_irq_msg(TWI_COND_ACK, address, 1));
-        part_write(message.u.twi.data);
+        avr_raise_irq(twi_input, avr_twi_irq_msg(TWI_COND_ACK, address, (uint8_t)part_write(message.u.twi.data)));
     }
     if (message.u.twi.msg & TWI_COND_READ)
         avr_raise_irq(twi_input, avr_twi_irq_msg(TWI_COND_READ, address, part_read()));

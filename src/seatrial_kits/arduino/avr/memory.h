@@ -13,11 +13,36 @@ static void memory_copy(uint8_t *to)
     avr_ioctl(avr, AVR_IOCTL_EEPROM_GET, &all);
 }
 
+/* A write lasts 3.4 ms, while EEPE is set (ATmega2560 data sheet, 8.6.3): simavr clears it at once. Comes
+ * after its own handler. */
+#define EECR 0x3F
+#define WRITE_TICKS (0.0034 * CLOCK)
+enum { EEPE_BIT = 0x02, EEMPE_BIT = 0x04 };
+
+static avr_cycle_count_t memory_written(avr_t *of, avr_cycle_count_t cycle, void *unused)
+{
+    (void)cycle, (void)unused;
+    of->data[EECR] &= (uint8_t)~EEPE_BIT;
+    return 0;
+}
+
+static void memory_controlled(avr_t *of, avr_io_addr_t address, uint8_t value, void *unused)
+{
+    static uint8_t before;
+    (void)unused;
+    if (value & EEPE_BIT && before & EEMPE_BIT) {
+        of->data[address] |= EEPE_BIT;
+        later((double)ticks() + WRITE_TICKS, memory_written, 0);
+    }
+    before = value;
+}
+
 /* As it is before the program runs: erased, or what the firmware brings. */
 static void memory_begin(void)
 {
     memory_size = avr->e2end + 1 < EEPROM_MOST ? (uint32_t)avr->e2end + 1 : EEPROM_MOST;
     memory_copy(memory);
+    avr_register_io_write(avr, EECR, memory_controlled, 0);
 }
 
 static void memory_preload(uint16_t at, uint8_t value)

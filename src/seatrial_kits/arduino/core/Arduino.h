@@ -104,7 +104,16 @@ int16_t digitalRead(uint8_t pin);
 int16_t analogRead(uint8_t pin);
 void analogWrite(uint8_t pin, int value);
 void analogReference(uint8_t mode);
+void tone(uint8_t pin, unsigned frequency, uint32_t duration = 0);
+void noTone(uint8_t pin);
 uint32_t pulseIn(uint8_t pin, uint8_t level, uint32_t timeout = 1000000);
+/* Registers of a pin: each pin is bit 0 of a port of its own, and these follow each other in memory. */
+#define NOT_A_PORT 0
+#define digitalPinToPort(pin) ((uint8_t)((pin) + 1))
+#define digitalPinToBitMask(pin) ((uint8_t)1)
+volatile uint8_t *portInputRegister(uint8_t port);
+volatile uint8_t *portModeRegister(uint8_t port);
+volatile uint8_t *portOutputRegister(uint8_t port);
 uint32_t pulseInLong(uint8_t pin, uint8_t level, uint32_t timeout = 1000000);
 void shiftOut(uint8_t data, uint8_t clock, uint8_t order, uint8_t value);
 uint8_t shiftIn(uint8_t data, uint8_t clock, uint8_t order);

@@ -1,4 +1,4 @@
-/* SPI, as its master; nothing is connected: it reads 0xFF. */
+/* SPI, as its master; where no part is selected, it reads 0xFF. */
 #ifndef SPI_h
 #define SPI_h
 
@@ -32,11 +32,13 @@ public:
     void end() {}
     void beginTransaction(SPISettings settings) { clock_ = settings.clock; }
     void endTransaction() {}
+    void usingInterrupt(uint8_t) {}
+    void notUsingInterrupt(uint8_t) {}
     void setClockDivider(uint8_t divider) { clock_ = F_CPU / divider; }
     void setBitOrder(uint8_t) {}
     void setDataMode(uint8_t) {}
     uint8_t transfer(uint8_t data);
-    uint16_t transfer16(uint16_t data) { transfer((uint8_t)(data >> 8)); transfer((uint8_t)data); return 0xFFFF; }
+    uint16_t transfer16(uint16_t data) { uint16_t high = transfer((uint8_t)(data >> 8)); return (uint16_t)(high << 8 | transfer((uint8_t)data)); }
     void transfer(void *data, size_t size) { for (size_t i = 0; i < size; i++) ((uint8_t *)data)[i] = transfer(((uint8_t *)data)[i]); }
 
 private:

@@ -29,8 +29,9 @@ public:
 
 private:
     static SoftwareSerial *listener_;
+    void hear(bool on);
     uint8_t rx_, tx_;
-    int line_ = -1;
+    int to_ = -1, from_ = -1; /* the lines at its pins */
     uint32_t byte_us_ = 0;
 };
 

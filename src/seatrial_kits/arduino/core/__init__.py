@@ -14,6 +14,7 @@ DATA_FILES = (
     "api.cpp",
     "avr_libc.cpp",
     "avr_libc.h",
+    "crashes.h",
     "devices.cpp",
     "machine.cpp",
     "machine.h",
@@ -22,5 +23,6 @@ DATA_FILES = (
     "reset.h",
     "sketch.h",
     "texts.cpp",
+    "tones.h",
     "uarts.cpp",
 )

@@ -35,6 +35,10 @@ void pinMode(uint8_t pin, uint8_t mode)
 void digitalWrite(uint8_t pin, uint8_t level) { charge(70); machine::drive(pin, level != LOW); }
 int16_t digitalRead(uint8_t pin) { charge(60); return machine::level(pin); }
 
+volatile uint8_t *portInputRegister(uint8_t port) { return machine::register_of((uint8_t)(port - 1), 0); }
+volatile uint8_t *portModeRegister(uint8_t port) { return machine::register_of((uint8_t)(port - 1), 1); }
+volatile uint8_t *portOutputRegister(uint8_t port) { return machine::register_of((uint8_t)(port - 1), 2); }
+
 static double reference = 5.0; /* V */
 
 void analogReference(uint8_t which)
@@ -50,7 +54,8 @@ void analogReference(uint8_t which)
 int16_t analogRead(uint8_t pin)
 {
     charge(1792);
-    double count = machine::volts((uint8_t)(pin >= A0 ? pin - A0 : pin)) / reference * 1024.0;
+    uint8_t channel = (uint8_t)((pin >= A0 ? pin - A0 : pin) % (NUM_ANALOG_INPUTS > 8 ? 16 : 8));
+    double count = machine::volts(channel) / reference * 1024.0;
     return (int16_t)(count < 0.0 ? 0.0 : count > 1023.0 ? 1023.0 : count);
 }
 
@@ -105,6 +110,29 @@ uint8_t shiftIn(uint8_t data, uint8_t clock, uint8_t order)
     return value;
 }
 
+/* Half a period by timer 2: its register of 8 bits after the first divider for which the period fits. */
+void tone(uint8_t pin, unsigned frequency, uint32_t duration)
+{
+    charge(300);
+    if (!machine::can_sound(pin))
+        return;
+    pinMode(pin, OUTPUT);
+    if (!frequency)
+        return;
+    const uint32_t dividers[] = {1, 8, 32, 64, 128, 256, 1024};
+    uint32_t count = 0, divider = 1;
+    for (uint32_t each : dividers) {
+        divider = each;
+        count = F_CPU / frequency / 2 / divider - 1;
+        if (count <= 255)
+            break;
+    }
+    int64_t turns = duration ? (int64_t)(2ull * frequency * duration / 1000) : -1;
+    machine::sound(pin, ((count & 255) + 1) * divider, turns);
+}
+
+void noTone(uint8_t pin) { charge(80); machine::hush(pin); }
+
 /* ------------------------------------------------------------------ interrupts */
 
 int16_t digitalPinToInterrupt(int pin)
@@ -124,6 +152,16 @@ void attachInterrupt(uint8_t number, void (*handler)(), int mode) { charge(40); 
 void detachInterrupt(uint8_t number) { charge(40); machine::on_edge(number, nullptr, 0); }
 void interrupts() { machine::enable(true); charge(1); }
 void noInterrupts() { machine::enable(false); charge(1); }
+SketchStatus sketch_status;
+SketchStatus::operator uint8_t() const { charge(1); return (uint8_t)(machine::enabled() << SREG_I); }
+
+SketchStatus &SketchStatus::operator=(uint8_t status)
+{
+    charge(1);
+    machine::enable(status >> SREG_I & 1);
+    return *this;
+}
+
 bool interrupts_enabled() { return machine::enabled(); }
 
 uint8_t &sketch_reset_flags = machine::reset_flags;

@@ -12,6 +12,7 @@
 extern "C" int part_link_begin(uint8_t address, int reading);
 extern "C" int part_link_write(uint8_t data);
 extern "C" uint8_t part_link_read();
+extern "C" uint8_t part_link_transfer(uint8_t data);
 
 using machine::charge;
 
@@ -36,10 +37,12 @@ SoftwareSerial *SoftwareSerial::listener_;
 void SoftwareSerial::begin(long baud)
 {
     charge(400);
-    line_ = machine::line_at(rx_, tx_);
+    to_ = machine::line_to(rx_);
+    from_ = machine::line_from(tx_);
     byte_us_ = baud > 0 ? (uint32_t)(10000000 / baud) : 0;
-    if (line_ >= 0)
-        machine::open_uart((uint8_t)line_, (uint32_t)baud);
+    for (int each : {to_, from_ == to_ ? -1 : from_})
+        if (each >= 0)
+            machine::open_uart((uint8_t)each, (uint32_t)baud);
     listen();
 }
 
@@ -50,8 +53,7 @@ bool SoftwareSerial::listen()
     if (listener_)
         listener_->stopListening();
     listener_ = this;
-    if (line_ >= 0)
-        machine::listen((uint8_t)line_, true);
+    hear(true);
     return true;
 }
 
@@ -60,15 +62,15 @@ bool SoftwareSerial::stopListening()
     if (listener_ != this)
         return false;
     listener_ = nullptr;
-    if (line_ >= 0)
-        machine::listen((uint8_t)line_, false);
+    hear(false);
     return true;
 }
 
-bool SoftwareSerial::overflow() { return line_ >= 0 && machine::overflowed((uint8_t)line_); }
-int16_t SoftwareSerial::available() { charge(24); return isListening() && line_ >= 0 ? (int16_t)machine::received((uint8_t)line_) : (int16_t)0; }
-int16_t SoftwareSerial::read() { charge(30); return isListening() && line_ >= 0 ? (int16_t)machine::take((uint8_t)line_, false) : (int16_t)-1; }
-int16_t SoftwareSerial::peek() { charge(24); return isListening() && line_ >= 0 ? (int16_t)machine::take((uint8_t)line_, true) : (int16_t)-1; }
+void SoftwareSerial::hear(bool on) { if (to_ >= 0) machine::listen((uint8_t)to_, on); }
+bool SoftwareSerial::overflow() { return to_ >= 0 && machine::overflowed((uint8_t)to_); }
+int16_t SoftwareSerial::available() { charge(24); return isListening() && to_ >= 0 ? (int16_t)machine::received((uint8_t)to_) : (int16_t)0; }
+int16_t SoftwareSerial::read() { charge(30); return isListening() && to_ >= 0 ? (int16_t)machine::take((uint8_t)to_, false) : (int16_t)-1; }
+int16_t SoftwareSerial::peek() { charge(24); return isListening() && to_ >= 0 ? (int16_t)machine::take((uint8_t)to_, true) : (int16_t)-1; }
 
 /* Bit by bit, with interrupts off: what comes meanwhile is not received. */
 size_t SoftwareSerial::write(uint8_t data)
@@ -77,14 +79,14 @@ size_t SoftwareSerial::write(uint8_t data)
         return 0;
     bool was = interrupts_enabled();
     noInterrupts();
-    if (line_ >= 0) {
-        machine::listen((uint8_t)line_, false);
-        machine::send((uint8_t)line_, data);
-        machine::drain((uint8_t)line_);
-        machine::listen((uint8_t)line_, isListening());
+    hear(false);
+    if (from_ >= 0) {
+        machine::send((uint8_t)from_, data);
+        machine::drain((uint8_t)from_);
     } else {
         delayMicroseconds(byte_us_);
     }
+    hear(isListening());
     if (was)
         interrupts();
     return 1;
@@ -114,7 +116,8 @@ uint8_t TwoWire::endTransmission(bool)
         return 2;
     for (uint8_t i = 0; i < written_; i++) {
         pass(1);
-        part_link_write(out_[i]);
+        if (!part_link_write(out_[i]))
+            return 3;
     }
     return 0;
 }
@@ -133,7 +136,12 @@ uint8_t TwoWire::requestFrom(uint8_t address, uint8_t count, uint8_t)
 }
 
 SPIClass SPI;
-uint8_t SPIClass::transfer(uint8_t) { charge((uint32_t)(8.0 * machine::CLOCK / clock_) + 4); return 0xFF; }
+uint8_t SPIClass::transfer(uint8_t data)
+{
+    uint8_t received = part_link_transfer(data);
+    charge((uint32_t)(8.0 * machine::CLOCK / clock_) + 4);
+    return received;
+}
 
 /* What the core does after each loop(). */
 void serve_serial_events()
@@ -191,11 +199,23 @@ void Servo::writeMicroseconds(int us)
 
 EEPROMClass EEPROM;
 
-static uint8_t memory_read(uintptr_t at) { charge(12); return at < EEPROM_SIZE ? machine::remembered((uint16_t)at) : 0xFF; }
+/* A write goes on for 3.4 ms by itself; whatever comes next waits for it. */
+static uint64_t memory_ready;
+
+bool eeprom_ready() { charge(2); return machine::now >= memory_ready; }
+
+static uint8_t memory_read(uintptr_t at)
+{
+    machine::pass_until(memory_ready);
+    charge(12);
+    return at < EEPROM_SIZE ? machine::remembered((uint16_t)at) : 0xFF;
+}
 
 static void memory_write(uintptr_t at, uint8_t value)
 {
-    machine::pass_until(machine::now + 54400);
+    machine::pass_until(memory_ready);
+    charge(20);
+    memory_ready = machine::now + 54400;
     if (at < EEPROM_SIZE)
         machine::remember((uint16_t)at, value);
 }

@@ -1,5 +1,6 @@
 #include "machine.h"
 
+#include <execinfo.h>
 #include <pthread.h>
 #include <signal.h>
 #include <stdarg.h>
@@ -11,6 +12,7 @@
 #include <initializer_list>
 
 #include "link.h"
+#include "drives.h"
 #include "parts.h"
 #include "waves.h"
 
@@ -31,7 +33,11 @@ constexpr size_t STACK = 64 << 10, GUARD = 64 << 10;
 constexpr uint64_t FRAME = (uint64_t)(0.02 * CLOCK);
 #ifdef BOARD_MEGA
 constexpr int INTERRUPT_PIN[INTERRUPTS] = {2, 3, 21, 20, 19, 18};
+constexpr int BOARD_PINS = 70;
+const char BOARD[] = "Mega";
 #else
+constexpr int BOARD_PINS = 20;
+const char BOARD[] = "Uno";
 constexpr int INTERRUPT_PIN[INTERRUPTS] = {2, 3, -1, -1, -1, -1};
 #endif
 
@@ -59,6 +65,7 @@ link_input configured[CONFIGURED]; /* lines: the same after a reset */
 int configured_count;
 
 #include "pins.h"
+#include "tones.h"
 
 void configure(const link_input *input)
 {
@@ -88,8 +95,12 @@ void take_input(const link_input *input)
     case IN_LEVEL: put_outside(index % PINS, input->number != 0.0); break;
     case IN_FREQUENCY: wave_set(index, 0, input->number, now); break;
     case IN_PULSE: wave_set(index, 1, input->number, now); break;
-    case IN_QUANTITY: part_quantities[index % QUANTITIES] = input->number; break;
-    case IN_PART: part_add((uint8_t)input->value, index); break;
+    case IN_PART: part_add(input); watch_part(index); break;
+    case IN_REGISTER: part_set(input); break;
+    case IN_REGISTERS: part_store(input); break;
+    case IN_REPLY: part_clear(input); break;
+    case IN_DRIVE: drive_add(index % PINS, (uint8_t)input->value, (uint64_t)input->number); break;
+    case IN_FORGET: drive_forget(index % PINS); break;
     case IN_WATCH: pins[index % PINS].watched = true; break;
     }
 }
@@ -126,6 +137,8 @@ uint64_t first(bool do_it)
     uint64_t all = due;
     all = wave_due < all ? wave_due : all;
     all = servo_next < all ? servo_next : all;
+    all = tone_next < all ? tone_next : all;
+    all = drive_next() < all ? drive_next() : all;
     all = watchdog_due < all ? watchdog_due : all;
     all = target < all ? target : all;
     if (!do_it)
@@ -141,12 +154,17 @@ uint64_t first(bool do_it)
         put_outside(one->pin, one->level);
     } else if (all == servo_next) {
         turn_servos();
+    } else if (all == tone_next) {
+        turn_tone();
+    } else if (all == drive_next()) {
+        drive_at one = drive_take();
+        put_outside(one.pin, one.level == DRIVE_NONE ? -1 : one.level);
     } else if (all == watchdog_due) {
         reset();
     } else {
         refuse_other_rates();
         link_answer(now, "");
-        target = link_await(take_input);
+        target = link_read();
     }
     now = late > now ? late : now;
     return all;
@@ -165,17 +183,20 @@ void interrupt()
         charge(80); /* registers saved and restored, the handler called */
         externals[each].handler();
         in_interrupt = false;
+        interrupts_on = true; /* the return of a handler sets the flag */
     }
 }
 
 void happen()
 {
+    if (by_registers)
+        take_registers();
     while (next_due <= now) {
         first(true);
         next_due = first(false);
     }
     interrupt();
-    next_due = first(false);
+    next_due = by_registers ? 0 : first(false);
 }
 
 void refuse_hang()
@@ -186,55 +207,14 @@ void refuse_hang()
             (double)(now - last_call) / CLOCK);
 }
 
-void crashed(int number, siginfo_t *info, void *context)
-{
-    char *at = (char *)info->si_addr;
-    if (number == SIGSEGV && at >= stack - GUARD && at < stack)
-        end("it overran its stack of %zu kB: a recursion without end, or large local arrays "
-            "(the board has 8 kB or less in all)",
-            STACK >> 10);
-    if (at == nullptr && ((ucontext_t *)context)->uc_mcontext.gregs[REG_RIP] == 0)
-        reset(); /* a jump to the beginning of the program */
-    greg_t place = ((ucontext_t *)context)->uc_mcontext.gregs[REG_RIP];
-    end("it crashed: %s [at 0x%llx]", strsignal(number), (unsigned long long)place);
-}
-
-/* Ten times in a second of CPU time: a loop without any code in it is not instrumented. Often it waits
- * for the watchdog. */
-void watch_for_hang(int)
-{
-    static uint64_t before = NEVER;
-    if (now == before && watchdog_due != NEVER)
-        pass_until(watchdog_due);
-    if (now == before)
-        end("it does not go on and calls nothing: an endless loop");
-    before = now;
-}
-
-void catch_crashes()
-{
-    static char alternative[64 << 10];
-    stack_t other = {alternative, 0, sizeof alternative};
-    sigaltstack(&other, nullptr);
-    struct sigaction action = {};
-    action.sa_sigaction = crashed;
-    action.sa_flags = SA_SIGINFO | SA_ONSTACK | SA_NODEFER;
-    for (int number : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT})
-        sigaction(number, &action, nullptr);
-    struct sigaction ticking = {};
-    ticking.sa_handler = watch_for_hang;
-    ticking.sa_flags = SA_RESTART | SA_ONSTACK;
-    sigaction(SIGVTALRM, &ticking, nullptr);
-    itimerval often = {{0, 100000}, {0, 100000}};
-    setitimer(ITIMER_VIRTUAL, &often, nullptr);
-}
+#include "crashes.h"
 
 void *run(void *)
 {
     catch_crashes();
     if (!resumed)
-        target = link_await(take_input);
-    next_due = first(false);
+        target = link_read();
+    next_due = by_registers ? 0 : first(false);
     setup();
     for (;;) {
         last_call = now;
@@ -254,10 +234,21 @@ void charge(uint32_t cycles)
         happen();
 }
 
+volatile uint8_t *register_of(uint8_t pin, int which)
+{
+    need_pin(pin);
+    by_registers = true;
+    if (next_due != NEVER)
+        next_due = 0;
+    return &registers[pin][which];
+}
+
 void pass_until(uint64_t when, bool event)
 {
+    if (by_registers)
+        take_registers();
     while (now < when) {
-        uint64_t due = next_due = first(false);
+        uint64_t due = next_due = first(false); /* nothing is written meanwhile */
         now = due < when ? (due > now ? due : now) : when;
         last_call = now;
         if (now >= next_due)
@@ -272,24 +263,27 @@ void report_byte(uint8_t uart, uint8_t data) { link_put(OUT_UART, uart, data, no
 
 void drive(uint8_t pin, bool to)
 {
-    if (pin >= PINS)
-        return;
+    need_pin(pin);
     if (pins[pin].share >= 0)
         modulated--;
     pins[pin].share = -1;
     pins[pin].latch = to;
-    settle(pin);
+    settle_own(pin);
 }
 
 void direct(uint8_t pin, bool output)
 {
-    if (pin >= PINS)
-        return;
+    need_pin(pin);
     pins[pin].output = output;
-    settle(pin);
+    settle_own(pin);
 }
 
-bool level(uint8_t pin) { return pin < PINS && pins[pin].level; }
+bool level(uint8_t pin)
+{
+    need_pin(pin);
+    return pins[pin].level;
+}
+
 uint8_t remembered(uint16_t at) { return memory[at % EEPROM_MOST]; }
 
 void remember(uint16_t at, uint8_t value)
@@ -303,8 +297,7 @@ double volts(uint8_t channel) { return adc[channel % 16]; }
 
 void modulate(uint8_t pin, int share)
 {
-    if (pin >= PINS)
-        return;
+    need_pin(pin);
     if (pins[pin].share < 0) {
         modulated++;
         put_output(pin, true);
@@ -314,12 +307,33 @@ void modulate(uint8_t pin, int share)
     next_due = first(false);
 }
 
+bool can_sound(uint8_t pin) { return tone_pin == NO_TONE || tone_pin == pin; }
+
+void sound(uint8_t pin, uint32_t half_period, int64_t turns)
+{
+    tone_pin = pin;
+    tone_half = half_period;
+    tone_turns = turns;
+    tone_next = now + half_period;
+    next_due = first(false);
+}
+
+void hush(uint8_t pin)
+{
+    if (tone_pin == pin)
+        end_tone();
+    drive(pin, false);
+    next_due = first(false);
+}
+
 int new_servo() { return servo_count < SERVOS ? servo_count++ : -1; }
 
 void set_servo(int servo, int pin, double us)
 {
     if (servo < 0)
         return;
+    if (pin >= 0)
+        need_pin((uint8_t)pin);
     if (pin != servos[servo].pin && servos[servo].pin >= 0)
         put_output((uint8_t)servos[servo].pin, false);
     servos[servo] = {pin, us};
@@ -363,8 +377,7 @@ void end(const char *format, ...)
     va_start(values, format);
     vsnprintf(text, sizeof text, format, values);
     va_end(values);
-    link_answer(now, text);
-    _exit(0);
+    end_at(nullptr, text);
 }
 
 } // namespace machine
@@ -384,6 +397,7 @@ int main(int, char **arguments)
 {
     using namespace machine;
     link_out = atoi(arguments[1]);
+    link_take = take_input;
     patience = (uint64_t)(atof(arguments[2]) * CLOCK);
     memset(memory, 0xFF, sizeof memory);
     program = arguments;
@@ -397,6 +411,10 @@ int main(int, char **arguments)
     pthread_attr_setstack(&attributes, stack, STACK);
     pthread_t thread;
     pthread_create(&thread, &attributes, run, nullptr);
+    sigset_t ticks; /* the sketch's thread takes them: there they say where it is */
+    sigemptyset(&ticks);
+    sigaddset(&ticks, SIGVTALRM);
+    pthread_sigmask(SIG_BLOCK, &ticks, nullptr);
     pthread_join(thread, nullptr);
     return 0;
 }
@@ -404,3 +422,14 @@ int main(int, char **arguments)
 extern "C" int part_link_begin(uint8_t address, int reading) { return part_begin(address, reading); }
 extern "C" int part_link_write(uint8_t data) { return part_write(data); }
 extern "C" uint8_t part_link_read() { return part_read(); }
+extern "C" uint8_t part_link_transfer(uint8_t data) { return part_transfer(data); }
+
+static uint64_t part_call(uint8_t call, part *one, uint16_t value)
+{
+    link_event event = {call, (uint8_t)(one - parts), value, machine::now};
+    uint32_t count = one->sent_length;
+    one->sent_length = 0;
+    uint64_t result = link_call(event, one->sent, count);
+    machine::reschedule(); /* it may have said what it drives, and when */
+    return result;
+}

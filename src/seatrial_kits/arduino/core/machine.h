@@ -20,6 +20,7 @@ void drive(uint8_t pin, bool level); /* of an input: whether it is pulled up */
 void direct(uint8_t pin, bool output);
 bool level(uint8_t pin);
 double volts(uint8_t channel);
+volatile uint8_t *register_of(uint8_t pin, int which); /* 0 to 2: PIN, DDR, PORT; its bit 0 is the pin */
 void modulate(uint8_t pin, int share); /* PWM, 0 to 255 */
 
 void open_uart(uint8_t uart, uint32_t baud);
@@ -29,8 +30,13 @@ int room(uint8_t uart);
 void send(uint8_t uart, uint8_t data);
 void drain(uint8_t uart);
 bool overflowed(uint8_t uart); /* a byte found no room since this was last read */
-int line_at(int rx_pin, int tx_pin); /* the UART whose line is at these pins, or -1 */
+int line_to(int rx_pin);   /* the UART whose line ends at this pin, or -1 */
+int line_from(int tx_pin); /* the one whose line begins there */
 void listen(uint8_t uart, bool on);  /* software receives one line at a time, and none while it sends */
+
+bool can_sound(uint8_t pin); /* one pin at a time */
+void sound(uint8_t pin, uint32_t half_period, int64_t turns); /* cycles; turns below 0: without end */
+void hush(uint8_t pin);
 
 int new_servo();
 void set_servo(int servo, int pin, double us); /* pin -1: detached */

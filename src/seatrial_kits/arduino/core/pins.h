@@ -3,13 +3,25 @@
 #define PINS_H
 
 struct Pin {
-    bool level = false, watched = false;
+    bool level = false, watched = false, part = false; /* a part follows the sketch's levels there */
     bool output = false, latch = false; /* DDR and PORT: of an input, whether it is pulled up */
     int outside = -1;                   /* level that is driven from outside; -1: nothing is there */
     int share = -1;                     /* of 255; -1: no PWM */
     double edge = 0.0;
 } pins[PINS];
 int modulated;
+
+void need_pin(uint8_t pin)
+{
+    if (pin >= BOARD_PINS)
+        end("it uses pin %d: the %s has 0 to %d", pin, BOARD, BOARD_PINS - 1);
+}
+
+/* PIN, DDR and PORT as libraries use them that take a pin's registers (portOutputRegister): each pin has
+ * its own, of which bit 0 is the pin. Between stretches of code what was written there happens. */
+enum { OF_INPUT, OF_MODE, OF_OUTPUT };
+volatile uint8_t registers[PINS][3];
+bool by_registers; /* one was taken */
 
 void show(uint8_t pin)
 {
@@ -22,6 +34,7 @@ void put_level(uint8_t pin, bool to)
     if (pins[pin].level == to)
         return;
     pins[pin].level = to;
+    registers[pin][OF_INPUT] = to;
     show(pin);
     for (int each = 0; each < INTERRUPTS; each++) {
         Interrupt &one = externals[each];
@@ -34,7 +47,37 @@ void put_level(uint8_t pin, bool to)
 void settle(uint8_t pin)
 {
     const Pin &one = pins[pin];
+    registers[pin][OF_MODE] = one.output;
+    registers[pin][OF_OUTPUT] = one.latch;
     put_level(pin, one.output || one.outside < 0 ? one.latch : one.outside > 0);
+}
+
+/* By the sketch's doing. */
+void settle_own(uint8_t pin)
+{
+    bool before = pins[pin].level;
+    settle(pin);
+    if (pins[pin].part && pins[pin].level != before)
+        part_edge(pin, pins[pin].level);
+}
+
+/* Let what was written to registers happen. */
+void take_registers()
+{
+    for (uint8_t pin = 0; pin < BOARD_PINS; pin++) {
+        bool output = registers[pin][OF_MODE] & 1, latch = registers[pin][OF_OUTPUT] & 1;
+        if (output == pins[pin].output && latch == pins[pin].latch)
+            continue;
+        pins[pin].output = output;
+        pins[pin].latch = latch;
+        settle_own(pin);
+    }
+}
+
+void watch_part(uint8_t place)
+{
+    if (place < PINS && part_is_at(place))
+        pins[place].part = true;
 }
 
 void put_output(uint8_t pin, bool to)
@@ -44,7 +87,8 @@ void put_output(uint8_t pin, bool to)
     settle(pin);
 }
 
-void put_outside(uint8_t pin, bool to)
+/* A level is 0, 1, or below 0: nothing drives it. */
+void put_outside(uint8_t pin, int to)
 {
     pins[pin].outside = to;
     settle(pin);

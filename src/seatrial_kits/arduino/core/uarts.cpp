@@ -173,15 +173,16 @@ void drain(uint8_t uart)
         pass_until((uint64_t)uarts[uart].sent + 1, true);
 }
 
-int line_at(int rx_pin, int tx_pin)
+static int line_with(int Uart::*end, int pin)
 {
-    for (int each = 0; each < UARTS; each++) {
-        const Uart &one = uarts[each];
-        if ((one.rx_pin >= 0 && one.rx_pin == rx_pin) || (one.tx_pin >= 0 && one.tx_pin == tx_pin))
+    for (int each = 0; each < UARTS; each++)
+        if (uarts[each].*end >= 0 && uarts[each].*end == pin)
             return each;
-    }
     return -1;
 }
+
+int line_to(int rx_pin) { return line_with(&Uart::rx_pin, rx_pin); }
+int line_from(int tx_pin) { return line_with(&Uart::tx_pin, tx_pin); }
 
 bool overflowed(uint8_t uart)
 {

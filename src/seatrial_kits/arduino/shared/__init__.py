@@ -1,6 +1,7 @@
 """Code shared by simulated and emulated boards, in C."""
 
 DATA_FILES = (
+    "drives.h",
     "link.h",
     "parts.h",
     "rates.h",

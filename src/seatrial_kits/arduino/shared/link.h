@@ -3,6 +3,9 @@
  * Request: u32 size, u64 target (cycles), records {u8 kind, u8 index, u16 value, f64 number}.
  * Answered: u32 size, u64 reached (cycles), u32 number of records, records
  * {u8 kind, u8 index, u16 value, u64 cycle}, and a text if the sketch has come to an end.
+ *
+ * On the way a board may call: u32 LINK_CALL, a record {u8 call, u8 part, u16 value, u64 cycle}, u32 number of
+ * bytes, the bytes. Answered: u32 size, u64 result, records as of a request.
  */
 #ifndef SEATRIAL_LINK_H
 #define SEATRIAL_LINK_H
@@ -38,8 +41,12 @@ enum {
     IN_LEVEL = 'L',     /* at pin `index` */
     IN_FREQUENCY = 'F', /* of a square wave at pin `index`, Hz */
     IN_PULSE = 'R',     /* width of the servo pulses at pin `index`, s */
-    IN_QUANTITY = 'V',  /* `index` as in parts.h */
-    IN_PART = 'I',      /* I2C device of type `value` at address `index` */
+    IN_PART = 'I',      /* a part of kind `value` at address or pin `index`: see parts.h, as of the next three */
+    IN_REGISTER = 'g',
+    IN_REGISTERS = 'G',
+    IN_REPLY = 'y',
+    IN_DRIVE = 'd',     /* a part drives pin `index` at cycle `number` to level `value`; 2: it leaves it */
+    IN_FORGET = 'f',    /* what parts were to drive at pin `index` is off */
     IN_EEPROM = 'E',    /* byte `number` of the EEPROM, at address `value` */
     IN_WATCH = 'W',     /* pin `index` is to be reported */
     OUT_UART = 'T',     /* byte `value` left UART `index` */
@@ -106,27 +113,43 @@ static void link_answer(uint64_t reached, const char *end)
     link_count = 0;
 }
 
-/* Wait for the next request, give each record to `take`, and return its target; the program
- * ends with the one that requests it. */
-static uint64_t link_await(void (*take)(const link_input *))
+static void (*link_take)(const link_input *);
+
+/* Read a request or the answer of a call, give each record to `link_take`, and return its number. */
+static uint64_t link_read(void)
 {
-    static char *buffer;
-    static uint32_t room;
+    char head[12], *all;
     uint32_t size;
-    uint64_t target;
-    if (!link_read_all(&size, 4))
+    uint64_t number;
+    if (!link_read_all(head, 12))
         _exit(0);
-    if (size > room)
-        buffer = (char *)realloc(buffer, room = size);
-    if (!buffer || !link_read_all(buffer, size))
+    memcpy(&size, head, 4);
+    memcpy(&number, head + 4, 8);
+    size -= 8;
+    if (!size)
+        return number;
+    all = (char *)malloc(size); /* a record may lead to a call, and that comes here */
+    if (!all || !link_read_all(all, size))
         _exit(0);
-    memcpy(&target, buffer, 8);
-    for (uint32_t at = 8; at + sizeof(link_input) <= size; at += sizeof(link_input)) {
+    for (uint32_t at = 0; at + sizeof(link_input) <= size; at += sizeof(link_input)) {
         link_input input;
-        memcpy(&input, buffer + at, sizeof input);
-        take(&input);
+        memcpy(&input, all + at, sizeof input);
+        link_take(&input);
     }
-    return target;
+    free(all);
+    return number;
+}
+
+#define LINK_CALL 0xFFFFFFFFu
+
+static uint64_t link_call(link_event call, const uint8_t *bytes, uint32_t count)
+{
+    uint32_t mark = LINK_CALL;
+    link_write_all(&mark, 4);
+    link_write_all(&call, sizeof call);
+    link_write_all(&count, 4);
+    link_write_all(bytes, count);
+    return link_read();
 }
 
 #endif

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from typing import Any, ClassVar
 
@@ -12,13 +13,33 @@ from seatrial.model.component import NS, Input, Output, Parameter, terminal
 
 from .channels import AXES, MOST_CHANNELS, channels_of
 from .commands import messages
+from .instruments import (
+    BATTERY,
+    BatteryInfo,
+    MagneticField,
+    MagneticField2,
+    StaticPressure,
+    StaticTemperature,
+    arming,
+    battery_of,
+    magnetic_of,
+)
 from .navigation import Fix2, Solution, fixed, solved
 from .node import OFFLINE_NS, DroneCanNode, NodeStatus, Task
 from .parameters import Setting
 from .telemetry import QUANTITIES, ActuatorStatus, EscStatus, is_status_of, reported
-from .transfers import HIGH
+from .transfers import HIGH, LOW
 
 _NED = ("north", "east", "down")
+_INSTRUMENTS = ("battery", "magnetic_field", "static_pressure", "air_temperature")
+_MEASURED = {
+    BatteryInfo: "battery",
+    MagneticField: "magnetic_field",
+    MagneticField2: "magnetic_field",
+    StaticPressure: "static_pressure",
+    StaticTemperature: "air_temperature",
+}
+"""Messages of instruments, and the outputs that they are."""
 
 
 class DroneCanAutopilot(DroneCanNode):
@@ -35,16 +56,32 @@ class DroneCanAutopilot(DroneCanNode):
     acceleration of the last ahrs.Solution, with ``position_valid`` and ``attitude_valid``; of
     several senders, the last one applies. A Fix2 without a fix ends ``position_valid`` at once.
 
+    Battery, magnetic field, pressure and temperature of the air are those received last, with
+    their ``..._valid``; unknown values are 0. Every ``arming_period`` it sends ArmingStatus:
+    fully armed while ``armed`` is, which nothing sets by itself.
+
     ``others`` is the number of nodes whose NodeStatus came in the last 3 s.
 
     Raises InputError at the start for channels that cannot be.
     """
 
-    messages = (EscStatus, ActuatorStatus, Fix2, Solution, NodeStatus)
+    messages = (
+        EscStatus,
+        ActuatorStatus,
+        Fix2,
+        Solution,
+        NodeStatus,
+        BatteryInfo,
+        MagneticField,
+        MagneticField2,
+        StaticPressure,
+        StaticTemperature,
+    )
     transient = DroneCanNode.transient | {"_channels", "_origin"}
 
     channels = Parameter("esc0 esc1", "1", "what command.c1, c2... are", check=channels_of)
     command_period = Parameter(0.02, "s", "period of commands", min=1e-3, max=60.0)
+    arming_period = Parameter(0.5, "s", "period of ArmingStatus, 0: never", min=0.0, max=60.0)
     timeout = Parameter(
         1.0, "s", "age at which values of other nodes are no longer valid", min=1e-3
     )
@@ -54,6 +91,7 @@ class DroneCanAutopilot(DroneCanNode):
 
     command = Input("", "command: -1 to 1, or in the channel's unit", axes=AXES, optional=True)
     enabled = Input("1", "whether commands are sent", type=bool, start=True, optional=True)
+    armed = Input("1", "whether the vehicle is armed", type=bool, optional=True)
 
     voltage = Output("V", "voltage at each ESC", axes=AXES)
     current = Output("A", "current of each ESC", axes=AXES)
@@ -69,6 +107,17 @@ class DroneCanAutopilot(DroneCanNode):
     rates = Output("rad/s", "angular velocity, body axes", axes="pqr")
     acceleration = Output("m/s2", "specific force, body axes", axes="xyz", frame="b")
     attitude_valid = Output("1", "whether attitude is valid", type=bool)
+    battery_voltage = Output("V", "voltage of the battery")
+    battery_current = Output("A", "current out of the battery")
+    battery_temperature = Output("K", "temperature of the battery")
+    battery_charge = Output("1", "charge of the battery over its capacity")
+    battery_valid = Output("1", "whether the battery is known", type=bool)
+    magnetic_field = Output("T", "magnetic field, body axes", axes="xyz", frame="b")
+    magnetic_field_valid = Output("1", "whether the magnetic field is known", type=bool)
+    static_pressure = Output("Pa", "pressure of the air")
+    static_pressure_valid = Output("1", "whether the pressure is known", type=bool)
+    air_temperature = Output("K", "temperature of the air")
+    air_temperature_valid = Output("1", "whether the temperature is known", type=bool)
     others = Output("1", "other nodes that are there", type=int)
 
     terminals: ClassVar = {
@@ -95,6 +144,9 @@ class DroneCanAutopilot(DroneCanNode):
         for name in (*QUANTITIES, "position_n", "velocity_n", "attitude", "rates", "acceleration"):
             setattr(self, name, 0.0)
         self._reported_ns: list[int | None] = [None] * len(self._channels)
+        for name in (*(f"battery_{each}" for each in BATTERY), *_INSTRUMENTS[1:]):
+            setattr(self, name, 0.0)
+        self._measured_ns: dict[str, int] = {}
         self._fix_ns: int | None = None
         self._motion_ns: int | None = None
         self._nodes: dict[int, int] = {}
@@ -107,6 +159,8 @@ class DroneCanAutopilot(DroneCanNode):
         self.publish("status_valid", (*fresh, *(False,) * missing))
         self.publish("position_valid", self._valid(self._fix_ns))
         self.publish("attitude_valid", self._valid(self._motion_ns))
+        for name in _INSTRUMENTS:
+            self.publish(f"{name}_valid", self._valid(self._measured_ns.get(name)))
         self.publish("others", sum(self.now_ns - at < OFFLINE_NS for at in self._nodes.values()))
 
     def settings(self) -> Sequence[Setting]:
@@ -114,11 +168,15 @@ class DroneCanAutopilot(DroneCanNode):
         return (
             Setting("CHANNELS", self.channels, check=channels_of),
             Setting("COMMAND_PERIOD", self.command_period, 1e-3, 60.0),
+            Setting("ARMING_PERIOD", self.arming_period, 0.0, 60.0),
         )
 
     def tasks(self) -> Sequence[Task]:
         """Return its periodic messages."""
-        return (Task("commands", self.setting("COMMAND_PERIOD"), self._send_commands, False),)
+        return (
+            Task("commands", self.setting("COMMAND_PERIOD"), self._send_commands, False),
+            Task("arming", self.setting("ARMING_PERIOD"), self._send_arming, False),
+        )
 
     def received(self, time_ns: int, transfer: Transfer) -> None:
         """Take in a transfer of another node."""
@@ -135,6 +193,8 @@ class DroneCanAutopilot(DroneCanNode):
             if motion is not None:
                 self._motion_ns = time_ns
                 self.attitude, self.rates, self.acceleration = motion
+        elif message._type in _MEASURED:
+            self._measure(time_ns, message)
         else:
             for place, channel in enumerate(self._channels):
                 if is_status_of(channel, message):
@@ -160,6 +220,28 @@ class DroneCanAutopilot(DroneCanNode):
             values = list(getattr(self, name))
             values[place] = found.get(name, 0.0)
             setattr(self, name, values)
+
+    def _measure(self, time_ns: int, message: Any) -> None:
+        """Publish what an instrument or a battery says; nothing of what is not finite."""
+        name = _MEASURED[message._type]
+        if name == "battery":
+            found: Any = battery_of(message)
+            for each in BATTERY:
+                setattr(self, f"battery_{each}", found.get(each, 0.0))
+        elif name == "magnetic_field":
+            found = magnetic_of(message)
+        else:
+            field = {"static_pressure": "static_pressure", "air_temperature": "static_temperature"}
+            value = float(getattr(message, field[name]))
+            found = value if math.isfinite(value) else None
+        if found is None:
+            return
+        if name != "battery":
+            setattr(self, name, found)
+        self._measured_ns[name] = time_ns
+
+    def _send_arming(self, time_ns: int) -> None:
+        self.send(time_ns, arming(self.armed), LOW)
 
     def _valid(self, at: int | None) -> bool:
         return at is not None and self.now_ns - at < round(self.timeout * NS)

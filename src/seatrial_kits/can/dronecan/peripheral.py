@@ -1,4 +1,4 @@
-"""DroneCAN peripherals of an autopilot: ESCs, servos, a GNSS receiver, an AHRS."""
+"""DroneCAN peripherals of an autopilot: ESCs, servos, receivers, sensors, a battery."""
 
 from __future__ import annotations
 
@@ -8,15 +8,27 @@ from typing import Any, ClassVar
 from dronecan.transport import Transfer
 
 from seatrial.errors import InputError, unknown
+from seatrial.links.atmosphere import SEA_LEVEL_K, standard_pressure
+from seatrial.links.earth_field import earth_field
 from seatrial.links.geodesy import Origin
-from seatrial.links.parameter_validation import start_us
-from seatrial.links.unconnected import NOT_CONNECTED
+from seatrial.links.parameter_validation import start_us, whole_number
+from seatrial.links.unconnected import NOT_CONNECTED, is_connected
 from seatrial.model.component import NS, Input, Output, Parameter, Terminal, terminal
+from seatrial.physics.craft.kinematics import to_body
 
 from .channels import AXES, MOST_CHANNELS, channels_of
 from .commands import ArrayCommand, RawCommand, RPMCommand, commanded
+from .instruments import (
+    BATTERY,
+    ArmingStatus,
+    battery,
+    is_armed,
+    magnetic,
+    pressure,
+    temperature,
+)
 from .navigation import Motion, fix, solution
-from .node import DroneCanNode, Task
+from .node import OFFLINE_NS, DroneCanNode, Task
 from .parameters import Setting
 from .telemetry import QUANTITIES, status
 from .transfers import LOW, MEDIUM
@@ -30,6 +42,10 @@ def check_measured(text: str) -> None:
     for name in text.split():
         if name not in QUANTITIES:
             raise InputError(unknown("quantity in measured", name, QUANTITIES))
+
+
+def _measured(unit: str, description: str, **options: Any) -> Input:
+    return Input(unit, description, start=NOT_CONNECTED, optional=True, **options)
 
 
 class DroneCanPeripheral(DroneCanNode):
@@ -58,11 +74,21 @@ class DroneCanPeripheral(DroneCanNode):
     ``attitude_valid`` is false; rates and accelerations that nothing feeds are NaN. Both at once
     and then at whole periods from the start: after a sensor of the same period.
 
+    **Battery**: BatteryInfo every ``battery_period``; what nothing feeds is unknown (NaN, and a
+    charge of 127 %). **Magnetometer**: MagneticFieldStrength2 every ``magnetometer_period``, of
+    ``magnetic_field``, or without one of the World Magnetic Model at the origin, turned by
+    ``attitude``. **Barometer**: StaticPressure and StaticTemperature every ``barometer_period``, of
+    ``static_pressure`` and ``air_temperature``, or without them of the standard atmosphere at the
+    altitude of ``position_n``, and 288.15 K.
+
+    **Arming.** ``armed`` is the ArmingStatus received: false before the first, and 3 s after the
+    last. Commands act whatever it is, as those of ESCs do: what arming permits is the rig's.
+
     Raises InputError at the start for channels, pulses and a date that cannot be.
     """
 
-    messages = (RawCommand, RPMCommand, ArrayCommand)
-    transient = DroneCanNode.transient | {"_channels", "_origin", "_start_us"}
+    messages = (RawCommand, RPMCommand, ArrayCommand, ArmingStatus)
+    transient = DroneCanNode.transient | {"_channels", "_origin", "_start_us", "_field_n"}
 
     channels = Parameter("esc0", "1", "what command.c1, c2... are", check=channels_of)
     command_timeout = Parameter(
@@ -77,6 +103,14 @@ class DroneCanPeripheral(DroneCanNode):
     measured = Parameter("", "1", "quantities of the status that are known", check=check_measured)
     gnss_period = Parameter(0.0, "s", "period of Fix2, 0: never", min=0.0, max=_LONGEST)
     ahrs_period = Parameter(0.0, "s", "period of ahrs.Solution, 0: never", min=0.0, max=_LONGEST)
+    battery_period = Parameter(0.0, "s", "period of BatteryInfo, 0: never", min=0.0, max=_LONGEST)
+    magnetometer_period = Parameter(
+        0.0, "s", "period of MagneticFieldStrength2, 0: never", min=0.0, max=_LONGEST
+    )
+    barometer_period = Parameter(
+        0.0, "s", "period of StaticPressure and StaticTemperature, 0: never", min=0.0, max=_LONGEST
+    )
+    battery_id = Parameter(0.0, "1", "which battery it is", min=0.0, max=255.0)
     latitude = Parameter(0.0, "rad", "of the origin, WGS 84", min=-1.5707, max=1.5707)
     longitude = Parameter(0.0, "rad", "of the origin, WGS 84", min=-3.1416, max=3.1416)
     altitude = Parameter(0.0, "m", "of the origin")
@@ -111,9 +145,18 @@ class DroneCanPeripheral(DroneCanNode):
     )
     attitude_valid = Input("1", "whether attitude is valid", type=bool, start=True, optional=True)
 
+    battery_voltage = _measured("V", "voltage of the battery")
+    battery_current = _measured("A", "current out of the battery")
+    battery_temperature = _measured("K", "temperature of the battery")
+    battery_charge = _measured("1", "charge of the battery over its capacity")
+    magnetic_field = _measured("T", "magnetic field, body axes", axes="xyz", frame="b")
+    static_pressure = _measured("Pa", "pressure of the air")
+    air_temperature = _measured("K", "temperature of the air")
+
     command = Output("", "command: -1 to 1, or in the channel's unit", axes=AXES)
     pulse = Output("s", "servo pulse", axes=AXES)
     failsafe = Output("1", "whether a channel is neutral for want of commands", type=bool)
+    armed = Output("1", "whether the autopilot says that it is armed", type=bool)
 
     terminals: ClassVar = {
         **DroneCanNode.terminals,
@@ -127,6 +170,9 @@ class DroneCanPeripheral(DroneCanNode):
             heading_valid="attitude_valid",
             gyro="rates",
             accelerometer="acceleration",
+        ),
+        "battery": terminal(
+            voltage="battery_voltage", current="battery_current", charge="battery_charge"
         ),
         "actuators": Terminal({f"ch{n}": f"pulse.{axis}" for n, axis in enumerate(AXES, 1)}),
     }
@@ -148,6 +194,7 @@ class DroneCanPeripheral(DroneCanNode):
         self._set_up()
         self._commands = [self._neutral(place) for place in range(len(self._channels))]
         self._commanded_ns: list[int | None] = [None] * len(self._channels)
+        self._armed, self._armed_ns = False, 0
 
     def outputs(self, t: float) -> None:
         """Publish commands, and what is sent."""
@@ -160,6 +207,7 @@ class DroneCanPeripheral(DroneCanNode):
         pulses = [self._pulse(place, value) for place, value in enumerate(found)]
         self.publish("pulse", (*pulses, *(self.pulse_neutral,) * missing))
         self.publish("failsafe", any(late))
+        self.publish("armed", self._armed and self.now_ns - self._armed_ns < OFFLINE_NS)
 
     def settings(self) -> Sequence[Setting]:
         """Return the parameters that the bus may see."""
@@ -169,6 +217,9 @@ class DroneCanPeripheral(DroneCanNode):
             Setting("STATUS_PERIOD", self.status_period, 0.0, _LONGEST),
             Setting("GNSS_PERIOD", self.gnss_period, 0.0, _LONGEST),
             Setting("AHRS_PERIOD", self.ahrs_period, 0.0, _LONGEST),
+            Setting("BATTERY_PERIOD", self.battery_period, 0.0, _LONGEST),
+            Setting("MAG_PERIOD", self.magnetometer_period, 0.0, _LONGEST),
+            Setting("BARO_PERIOD", self.barometer_period, 0.0, _LONGEST),
         )
 
     def tasks(self) -> Sequence[Task]:
@@ -177,10 +228,16 @@ class DroneCanPeripheral(DroneCanNode):
             Task("channels", self.setting("STATUS_PERIOD"), self._send_channels),
             Task("gnss", self.setting("GNSS_PERIOD"), self._send_fix, False),
             Task("ahrs", self.setting("AHRS_PERIOD"), self._send_attitude, False),
+            Task("battery", self.setting("BATTERY_PERIOD"), self._send_battery, False),
+            Task("magnetometer", self.setting("MAG_PERIOD"), self._send_field, False),
+            Task("barometer", self.setting("BARO_PERIOD"), self._send_pressure, False),
         )
 
     def received(self, time_ns: int, transfer: Transfer) -> None:
-        """Take in a command."""
+        """Take in a command, or the arming status."""
+        if transfer.payload._type is ArmingStatus:
+            self._armed, self._armed_ns = is_armed(transfer.payload), time_ns
+            return
         for place, value in commanded(self._channels, transfer.payload):
             self._commands[place], self._commanded_ns[place] = value, time_ns
 
@@ -205,6 +262,9 @@ class DroneCanPeripheral(DroneCanNode):
         self._channels = channels_of(self._written)
         self._origin = Origin(self.latitude, self.longitude, self.altitude)
         self._start_us = start_us(self.date)
+        self._field_n = earth_field(
+            self.latitude, self.longitude, self.altitude, self._start_us * 1e-6
+        )
 
     def _neutral(self, place: int) -> float:
         neutral: float = self.pulse_neutral
@@ -242,3 +302,22 @@ class DroneCanPeripheral(DroneCanNode):
         if self.attitude_valid:
             motion = Motion(tuple(self.attitude), tuple(self.rates), tuple(self.acceleration))
             self.send(time_ns, solution(motion), MEDIUM)
+
+    def _send_battery(self, time_ns: int) -> None:
+        values = [getattr(self, f"battery_{name}") for name in BATTERY]
+        self.send(time_ns, battery(values, whole_number("battery_id", self.battery_id)), LOW)
+
+    def _send_field(self, time_ns: int) -> None:
+        field = self.magnetic_field
+        if not is_connected(*field):
+            field = to_body(self.attitude, self._field_n)
+        self.send(time_ns, magnetic(field), MEDIUM)
+
+    def _send_pressure(self, time_ns: int) -> None:
+        altitude = self.altitude - self.position_n[2]
+        given = is_connected(self.static_pressure)
+        value = self.static_pressure if given else standard_pressure(altitude)
+        self.send(time_ns, pressure(value), MEDIUM)
+        known = is_connected(self.air_temperature)
+        kelvin = self.air_temperature if known else SEA_LEVEL_K
+        self.send(time_ns, temperature(kelvin), LOW)

@@ -16,7 +16,7 @@ from ..frame import Frame
 from ..node import CanNode
 from ..operations import Transmit
 from .database import identifier_of, read_database
-from .mapped import Mapped, mapped_signals
+from .mapped import Mapped, mapped_signals, message_names
 
 SIGNALS = 16
 """Signals that a node can send, and that it can read."""
@@ -49,15 +49,16 @@ class CanSignals(Component):
     Identifiers of 11 and of 29 bits are taken as they are; CAN FD where the DBC says so. Not here:
     multiplexed messages to send, counters and checksums inside messages, J1939.
 
-    Of a DBC the messages that are named must hold; limits beyond a signal's bits are those of its
-    bits. Raises InputError at the start, with the file, for a DBC that cannot be read or has
+    Of a DBC the messages that are named must hold, and nothing else is read. Limits beyond a
+    signal's bits are those of its bits, and a unit that is none leaves the DBC's numbers: ``notes``
+    says so. Raises InputError at the start, with the file, for a DBC that cannot be read or has
     numbers beyond any bus (`bounds`), messages that are named whose signals overlap or do not fit,
     signals that are not there, and ranges that do not fit.
     """
 
     feedthrough: ClassVar = {}
     discrete = True
-    transient = Component.transient | {"_sends", "_receives", "_sent", "_known"}
+    transient = Component.transient | {"_sends", "_receives", "_sent", "_known", "_notes"}
 
     database = Parameter("", "1", "the DBC file; in a profile, relative to it", role="file")
     sends = Parameter("", "1", "MESSAGE.SIGNAL [LOW HIGH UNIT] of each signal to send; with ;")
@@ -79,6 +80,7 @@ class CanSignals(Component):
     frames_received = Output("1", "frames received that it reads", type=int)
     frames_refused = Output("1", "frames received that are not as the DBC says", type=int)
     limited = Output("1", "values that were beyond their limits", type=int)
+    notes = Output("1", "oddities of the DBC's signals that are used; with ;", type=str)
 
     terminals: ClassVar = {"bus": terminal("tx", "rx")}
 
@@ -127,6 +129,7 @@ class CanSignals(Component):
             self.valid = (*valid, *(False,) * rest)
         self.frames_sent, self.frames_received, self.frames_refused = self._frames
         self.limited = self._limited
+        self.notes = self._notes
 
     def set_state(self, state: Any) -> None:
         """Restore what `get_state` returned."""
@@ -138,13 +141,15 @@ class CanSignals(Component):
     def _read_database(self) -> None:
         key = "database"
         try:
-            database = read_database(Path(self.database)) if self.database else Database()
+            wanted = message_names(self.sends) | message_names(self.receives)
+            database = read_database(Path(self.database), wanted) if self.database else Database()
             key = "sends"
             self._sends = self._mapped(database, self.sends)
             key = "receives"
             self._receives = self._mapped(database, self.receives)
         except InputError as error:
             raise InputError(f"{self.name}: {key}: {error}") from None
+        self._notes = "; ".join(n for each in (*self._sends, *self._receives) for n in each.notes)
         self._sent = _messages(self._sends)
         self._known = {identifier_of(m): m for m in _messages(self._receives)}
         for message in self._sent:

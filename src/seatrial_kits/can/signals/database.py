@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+from collections.abc import Collection
 from pathlib import Path
 from typing import Any
 
@@ -14,27 +15,28 @@ from seatrial.errors import InputError, unknown
 
 from ..frame import FD_LENGTHS
 from .bounds import LARGEST, check_bounds
+from .excerpt import excerpt
 
 SHORTEST_MS = 0.047
 """A frame of CAN is 47 bits at the least: at 1 Mbit/s."""
 _LONGEST_REASON = 500
 
 
-def read_database(path: Path) -> Database:
-    """Return the messages of a DBC file.
+def read_database(path: Path, wanted: Collection[str] | None = None) -> Database:
+    """Return the messages of a DBC file; of ``wanted`` alone, by name, whatever the others are.
 
     Raises InputError, with the file, if it cannot be read, is no DBC, has numbers beyond any bus
-    (`bounds`), or two messages with one identifier.
+    (`bounds`), two messages with one identifier, or not one of ``wanted`` (near misses).
     """
     try:
         with path.open("rb") as file:
             data = file.read(LARGEST + 1)
     except OSError as error:
         raise InputError(f"{path}: {error.strerror or error}") from None
-    return database_of(data, str(path))
+    return database_of(data, str(path), wanted)
 
 
-def database_of(data: bytes, called: str) -> Database:
+def database_of(data: bytes, called: str, wanted: Collection[str] | None = None) -> Database:
     """Return the messages of a DBC; as `read_database`, which names the file ``called``."""
     if len(data) > LARGEST:
         raise InputError(f"{called}: a DBC of more than {LARGEST} bytes, which is not read")
@@ -45,6 +47,10 @@ def database_of(data: bytes, called: str) -> Database:
     # What it warns of is refused where it matters.
     logging.getLogger("cantools.database.can.database").setLevel(logging.ERROR)
     try:
+        if wanted is not None:
+            text = excerpt(text, wanted)
+            if not text.strip():
+                return Database()
         check_bounds(text)
         found = cantools.database.load_string(text, "dbc", strict=False)
     except InputError as error:

@@ -12,6 +12,7 @@ from seatrial.errors import InputError
 from seatrial.model.units import conversion, unit
 
 from .database import find_signal, raw_range
+from .units import unit_of
 
 _NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
 _ENTRY = re.compile(
@@ -35,6 +36,8 @@ class Mapped:
     low: float
     """Least physical value that the signal can have, and is allowed to."""
     high: float
+    notes: tuple[str, ...] = ()
+    """Oddities of the DBC that a user should know of."""
 
     @property
     def start(self) -> float:
@@ -59,14 +62,20 @@ class Mapped:
         return min(max(self.signal.scaled_to_raw(physical), least), most)
 
 
+def message_names(written: str) -> set[str]:
+    """Return the messages of ``MESSAGE.SIGNAL ...; ...``; texts of another form have none."""
+    parts = (part.strip() for part in written.split(";"))
+    return {part.partition(".")[0] for part in parts if _ENTRY.fullmatch(part)}
+
+
 def mapped_signals(path: Path, database: Database, written: str) -> list[Mapped]:
     """Return the signals that ``MESSAGE.SIGNAL [LOW HIGH UNIT]; ...`` names, one per port.
 
     LOW to HIGH is what the port will have, which the signal must be able to carry.
 
     Raises InputError, with the file, for a text of another form, a message or signal that the
-    DBC does not have (near misses), one that is named twice, a unit that is none, limits that
-    the signal's bits and scaling cannot hold, and a range beyond its limits.
+    DBC does not have (near misses), one that is named twice, and a range beyond its limits. A unit
+    that is none, and limits beyond the signal's bits, are notes.
     """
     found: list[Mapped] = []
     for text in filter(None, (part.strip() for part in written.split(";"))):
@@ -85,10 +94,10 @@ def mapped_signals(path: Path, database: Database, written: str) -> list[Mapped]
 
 def _mapped(path: Path, message: Message, signal: Signal) -> Mapped:
     name = f"{path}: signal {message.name}.{signal.name}"
-    try:
-        measure = unit(signal.unit or "1")
-    except InputError as error:
-        raise InputError(f"{name}: {error}") from None
+    measure, notes = unit_of(signal.unit), []
+    if measure is None:
+        notes.append(f"{name}: {signal.unit!r} is not a unit: its port has the DBC's numbers")
+        measure = unit("1")
     if signal.length > LONGEST_SIGNAL:
         raise InputError(f"{name} has {signal.length} bits, at most {LONGEST_SIGNAL} make a number")
     if not 1e-30 <= abs(signal.scale) <= 1e30 or not abs(signal.offset) <= 1e30:
@@ -99,12 +108,23 @@ def _mapped(path: Path, message: Message, signal: Signal) -> Mapped:
     lowest, highest = _representable(signal)
     low = lowest if signal.minimum is None else max(lowest, float(signal.minimum))
     high = highest if signal.maximum is None else min(highest, float(signal.maximum))
-    if low > high:
-        raise InputError(
+    if _beyond(signal, lowest, highest):
+        low, high = (low, high) if low <= high else (lowest, highest)
+        notes.append(
             f"{name} has limits {signal.minimum:g} to {signal.maximum:g} {signal.unit or ''}, but "
-            f"{signal.length} bits of {signal.scale:g} hold {lowest:g} to {highest:g}"
+            f"{signal.length} bits of {signal.scale:g} hold {lowest:g} to {highest:g}: it is "
+            f"limited to {low:g} to {high:g}"
         )
-    return Mapped(message, signal, measure.factor, measure.offset, low, high)
+    return Mapped(message, signal, measure.factor, measure.offset, low, high, tuple(notes))
+
+
+def _beyond(signal: Signal, lowest: float, highest: float) -> bool:
+    """Return whether the limits of a signal are beyond its bits, or the wrong way round."""
+    if signal.minimum is None or signal.maximum is None:
+        return False
+    margin = _MARGIN * (highest - lowest) + abs(signal.scale)
+    outside = signal.minimum < lowest - margin or signal.maximum > highest + margin
+    return bool(outside or signal.minimum > signal.maximum)
 
 
 def _representable(signal: Signal) -> tuple[float, float]:
@@ -119,7 +139,10 @@ def _check_range(path: Path, mapped: Mapped, low: float, high: float, written: s
     signal = mapped.signal
     name = f"{path}: signal {mapped.message.name}.{signal.name}"
     try:
-        factor, offset = conversion(written or "1", signal.unit or "1")
+        of_signal = unit_of(signal.unit)
+        if of_signal is None:
+            unit(signal.unit)  # raises: a range in a unit cannot be compared
+        factor, offset = conversion(written or "1", of_signal or "1")
     except InputError as error:
         raise InputError(f"{name}: {error}") from None
     margin = _MARGIN * abs(signal.scale)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import datetime
 import math
+from collections.abc import Mapping
 from typing import Any
 from weakref import WeakKeyDictionary
 
@@ -19,10 +20,18 @@ from seatrial.links.unconnected import is_connected
 from seatrial.model.component import NS
 from seatrial.model.sampled import Sampled
 
+from ..ais.codec import Assembly
+from ..ais.reports import report as ais_report
+from ..received.directions import Variation
+from ..received.memory import Received, preferred_sources
+from ..received.outputs import QUANTITIES
+from ..received.publishing import Publisher, position
+from ..received.targets import Targets
 from .codec import decode, encode
 from .lines import Lines
 from .orders import Order, heading_ordered, last_reported, read_order
 from .ports import Nmea0183Ports
+from .quantities import LATE, READERS
 from .readings import Readings
 from .schedule import schedule
 from .sentences import SENTENCES
@@ -51,7 +60,14 @@ class Nmea0183(Nmea0183Ports):
     outputs, which are named after the inputs of guidance: a heading, from HSC or, if there is
     none, APB; or else the waypoint of RMB, whose depth is 0; with ``cruise_speed``. They apply for
     ``order_timeout``, and so do cross-track error, arrival and the waypoint's name, from whichever
-    came last. Other sentences are only counted; lines with a wrong checksum or none are refused.
+    came last. Lines with a wrong checksum or none are refused.
+
+    **Sensors.** Sentences of `quantities.READERS`, and AIS, become the outputs ``received_...``,
+    each quantity with whether it is valid (`Received`), of talkers as ``prefer`` has them. Magnetic
+    directions become true ones by the variation of their sentence, of other sentences (RMC, HDG),
+    ``variation`` if that is not 0, or the World Magnetic Model at the position received or an
+    origin that is not 0, 0; ``received_heading_from`` says which. ``received_messages`` counts, by
+    formatter, the sentences that had a value, ``received_others`` those that are not read.
 
     Serial lines have the baud rate of their URL: at 4800, some 480 characters a second pass; what
     does not, waits, and is lost when too much waits. Sentences of an `ais-transponder`, on ``ais``,
@@ -63,7 +79,8 @@ class Nmea0183(Nmea0183Ports):
     """
 
     rolls_back = False
-    transient = Sampled.transient | {"_endpoints", "_collected", "_schedule"}
+    transient = Sampled.transient | {"_endpoints", "_collected", "_schedule", "_received_values"}
+    transient |= {"_targets", "_publisher"}
 
     def __init__(self, name: str = "component") -> None:
         super().__init__(name)
@@ -89,6 +106,20 @@ class Nmea0183(Nmea0183Ports):
         self._half = ""
         self._sent = self._received = self._refused = 0
         self._orders: dict[str, tuple[int, Order]] = {}
+        self._values: dict[str, Any] = {}
+        self._stations: dict[str, Any] = {}
+        self._ais_parts: dict[str, list[str]] = {}
+        self._used: dict[str, list[int]] = {}
+        self._unread: dict[str, int] = {}
+        self._news: list[str] = []
+        self._expires = self.now_ns
+        self._distance = 0.0
+        self._build()
+
+    def set_state(self, state: Mapping[str, Any]) -> None:
+        """Restore what `get_state` returned."""
+        super().set_state(state)
+        self._build()
 
     def step(self, t: float, h: float) -> None:
         """Take in what came by the ports, and run the instants of the step."""
@@ -102,8 +133,10 @@ class Nmea0183(Nmea0183Ports):
         Outbox(self._out).flush()
 
     def sample(self, t: float, k: int) -> None:
-        """Publish what was ordered until now."""
-        orders = self._fresh(round(t * NS))
+        """Publish what was received and ordered until now."""
+        now_ns = round(t * NS)
+        self._publish_received(now_ns)
+        orders = self._fresh(now_ns)
         heading = heading_ordered(orders)
         place = orders["RMB"].place if "RMB" in orders else None
         self.target_valid = heading is not None or place is not None
@@ -121,6 +154,10 @@ class Nmea0183(Nmea0183Ports):
     def update(self, t: float, k: int) -> None:
         """Take in what has arrived, and send what is due."""
         now_ns = round(t * NS)
+        self._news = []
+        self._expires = min(self._received_values.expires(now_ns), self._targets.expires(now_ns))
+        if self.water_speed_valid:
+            self._distance += self.water_speed * self.period
         for endpoint in self._endpoints:
             for channel, data in endpoint.poll():
                 lines = self._collected.setdefault(channel, Lines())
@@ -188,6 +225,8 @@ class Nmea0183(Nmea0183Ports):
             None if place is None else sky(time.timestamp(), *place[:2]),
             leg,
             None if leg is None else (self._waypoint(leg.begin), self._waypoint(leg.end)),
+            self._distance if self.water_speed_valid else None,
+            tuple(speed if is_connected(speed) else None for speed in self.engine_speed),
         )
 
     def _leg(self) -> LegStatus:
@@ -218,16 +257,80 @@ class Nmea0183(Nmea0183Ports):
     def _read(self, lines: list[bytes], now_ns: int) -> None:
         for line in lines:
             if line.startswith(b"!"):
-                continue  # AIS
+                self._read_ais(line, now_ns)
+                continue
             message = decode(line)
             if message is None:
                 self._refused += 1
                 continue
             self._received += 1
-            order = read_order(message, self.variation)
+            self._take(message, now_ns)
+            known = self._publisher.variation(now_ns)
+            order = read_order(message, self.variation if known is None else known.value)
             if order is not None:
                 self._orders.pop(message.msgID, None)  # so that the newest is the last one
                 self._orders[message.msgID] = (now_ns, order)
+
+    def _take(self, message: Any, now_ns: int) -> None:
+        """Take in the quantities of a sentence."""
+        kind = message.msgID
+        if kind not in READERS:
+            self._unread[kind] = self._unread.get(kind, 0) + 1
+            return
+        read = READERS[kind](message)
+        self._count(kind, any(values is not None for values in read.values()))
+        late = LATE.get(kind, ())
+        received = self._received_values.take(now_ns, message.talker, kind, read, late=late)
+        self._news += received
+
+    def _read_ais(self, line: bytes, now_ns: int) -> None:
+        """Take in a sentence of AIS; the own ship's (VDO) is no target."""
+        found = Assembly(self._ais_parts).take(line)
+        if found is None or found[1]:
+            return
+        station = ais_report(found[0])
+        self._count(line[3:6].decode("latin-1"), station is not None)
+        if station is not None:
+            there = None
+            if "latitude" in station:
+                there = position(self._origin, station["latitude"], station["longitude"], 0.0)
+            self._targets.take(now_ns, station, there)
+            self._news.append("ais")
+
+    def _count(self, kind: str, used: bool) -> None:
+        counts = self._used.setdefault(kind, [0, 0])
+        counts[0] += used
+        counts[1] += 1
+
+    def _publish_received(self, now_ns: int) -> None:
+        expired = self._expires <= now_ns
+        self._publisher.publish(self._received_values.names() if expired else self._news, now_ns)
+        if expired or "ais" in self._news:
+            self._publisher.publish_targets(now_ns)
+        self.received_sources = self._received_values.sources(now_ns)
+        used = sorted(self._used.items())
+        self.received_messages = "; ".join(f"{kind} {some}/{all_}" for kind, (some, all_) in used)
+        unread = sorted(self._unread.items())
+        self.received_others = "; ".join(f"{kind} {count}" for kind, count in unread)
+
+    def _build(self) -> None:
+        """Make the views of the state."""
+        preferred = preferred_sources(self.prefer, QUANTITIES)
+        self._received_values = Received(self._values, round(self.timeout * NS), preferred)
+        self._targets = Targets(self._stations)
+        self._publisher = Publisher(
+            self,
+            "received_",
+            self._received_values,
+            self._targets,
+            self._origin,
+            self._given_variation,
+            lambda: self._start_us / 1e6 / 86400.0,
+        )
+
+    def _given_variation(self) -> Variation | None:
+        value: float = self.variation
+        return Variation(value, "the parameter variation") if value else None
 
     def _fresh(self, now_ns: int) -> dict[str, Order]:
         oldest = now_ns - round(self.order_timeout * NS)

@@ -10,12 +10,19 @@ from seatrial.links.unconnected import NOT_CONNECTED
 from seatrial.model.component import Input, Output, Parameter, Reachable, terminal
 from seatrial.model.sampled import Sampled
 
+from ..received.memory import preferred_sources
+from ..received.outputs import ENGINE_AXES, QUANTITIES, received_outputs
 from .schedule import schedule
 
 _NED = ("north", "east", "down")
 
 
-class Nmea0183Ports(Reachable, Sampled):
+def check_preferred(text: str) -> None:
+    """Raise InputError for a text that `prefer` refuses."""
+    preferred_sources(text, QUANTITIES)
+
+
+class Nmea0183Ports(received_outputs("received_"), Reachable, Sampled):  # type: ignore[misc]
     """Parameters, inputs and outputs of `Nmea0183`."""
 
     period = Parameter(0.05, "s", "time between two looks at links and clock", min=1e-6)
@@ -52,6 +59,13 @@ class Nmea0183Ports(Reachable, Sampled):
     )
     cruise_speed = Parameter(1.0, "m/s", "speed that goes with orders: they name none", min=0.0)
     order_timeout = Parameter(5.0, "s", "time for which an order is valid", min=0.0)
+
+    timeout = Parameter(
+        3.0, "s", "time for which a received value is valid, at least 3 of its intervals", min=0.0
+    )
+    prefer = Parameter(
+        "", "1", "QUANTITY TALKER of sources to use, the best first; with ;", check=check_preferred
+    )
 
     rx = Input("1", "bytes that arrive, as text", type=str, role="bytes", optional=True)
     ais = Input(
@@ -100,6 +114,9 @@ class Nmea0183Ports(Reachable, Sampled):
         optional=True,
     )
     rudder_valid = Input("1", "whether it is valid", type=bool, optional=True)
+    engine_speed = Input(
+        "rad/s", "speeds of the engines", axes=ENGINE_AXES, start=NOT_CONNECTED, optional=True
+    )
     leg = Input("1", "number of the leg that is followed, 0: none", type=int, optional=True)
     leg_from = Input("m", "begin of the leg, north-east-down", axes=_NED, optional=True)
     leg_to = Input("m", "waypoint at its end, north-east-down", axes=_NED, optional=True)
@@ -137,6 +154,23 @@ class Nmea0183Ports(Reachable, Sampled):
             water_depth="depth",
             water_depth_valid="depth_valid",
             rudder="rudder",
+        ),
+        "reading": terminal(
+            position_n="received_position_n",
+            velocity_n="received_velocity_n",
+            position_valid="received_position_valid",
+            heading="received_heading",
+            heading_valid="received_heading_valid",
+            wind_speed="received_wind_speed",
+            wind_angle="received_wind_angle",
+            wind_valid="received_wind_valid",
+            heel="received_attitude__phi",
+            pitch="received_attitude__theta",
+            yaw_rate="received_rate_of_turn",
+            imu_valid="received_rate_of_turn_valid",
+            water_depth="received_depth",
+            water_depth_valid="received_depth_valid",
+            rudder="received_rudder",
         ),
         # A true wind is as valid as the anemometer that it is estimated from.
         "anemometer": terminal(wind_valid="true_wind_valid"),

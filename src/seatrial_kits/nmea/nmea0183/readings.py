@@ -51,6 +51,20 @@ class Readings:
     waypoints: tuple[tuple[float, float], tuple[float, float]] | None = None
     """Latitude and longitude of its ends, degrees."""
 
+    water_distance: float | None = None
+    """Through the water since the start of the run, m."""
+    engine_speeds: tuple[float | None, ...] = ()
+    """rad/s."""
+
+    @property
+    def current(self) -> Pair | None:
+        """Set, clockwise from north, and drift of the current, m/s."""
+        if self.velocity is None or self.heading is None or self.water_speed is None:
+            return None
+        north = self.velocity[0] - self.water_speed * math.cos(self.heading)
+        east = self.velocity[1] - self.water_speed * math.sin(self.heading)
+        return math.atan2(east, north), math.hypot(north, east)
+
     @property
     def course(self) -> float | None:
         """Course over ground, clockwise from north."""

@@ -13,34 +13,39 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import Any
 
+from .fields import (
+    CELSIUS,
+    FATHOM,
+    FOOT,
+    KNOT,
+    MILE,
+    Fields,
+    bearing,
+    mode,
+    number,
+    place,
+    status,
+    time,
+    variation,
+)
 from .readings import Pair, Readings
+from .sentences_route import ROUTE, ROUTE_LEG
 
-Fields = dict[str, Any]
-
-KNOT = 1852.0 / 3600.0
-"""m/s."""
-FOOT = 0.3048
-FATHOM = 6.0 * FOOT
-CELSIUS = 273.15
-MILE = 1852.0
 _CHANNELS = 12
 """Most satellites of GSA and GGA."""
-_MOST_RMB = 9.99
-"""Largest cross-track error of RMB, miles."""
 
 
 def _rmc(of: Readings) -> Fields:
     return {
-        "time": _time(of),
-        "status": _status(of.position),
-        **_place(of),
-        "spd": _number(of.speed, 2, KNOT),
+        "time": time(of),
+        "status": status(of.position),
+        **place(of),
+        "spd": number(of.speed, 2, KNOT),
         "cog": bearing(of.course),
         "date": of.time.date(),
-        **_variation(of, "mv", "mvEW"),
-        "posMode": _mode(of.position),
+        **variation(of, "mv", "mvEW"),
+        "posMode": mode(of.position),
         "navStatus": None,  # of version 4.1; to some readers V, "none given", is no fix
     }
 
@@ -48,12 +53,12 @@ def _rmc(of: Readings) -> Fields:
 def _gga(of: Readings) -> Fields:
     altitude = None if of.position is None else of.position[2]
     return {
-        "time": _time(of),
-        **_place(of),
+        "time": time(of),
+        **place(of),
         "quality": "0" if of.position is None else "1",
         "numSV": "00" if of.sky is None else f"{min(len(of.sky.satellites), _CHANNELS):02}",
         "HDOP": "" if of.sky is None else f"{of.sky.hdop:.1f}",
-        "alt": _number(altitude, 2),
+        "alt": number(altitude, 2),
         "altUnit": "M",
         "sep": "",
         "sepUnit": "M",
@@ -64,16 +69,16 @@ def _gga(of: Readings) -> Fields:
 
 def _gll(of: Readings) -> Fields:
     return {
-        **_place(of),
-        "time": _time(of),
-        "status": _status(of.position),
-        "posMode": _mode(of.position),
+        **place(of),
+        "time": time(of),
+        "status": status(of.position),
+        "posMode": mode(of.position),
     }
 
 
 def _zda(of: Readings) -> Fields:
     return {
-        "time": _time(of),
+        "time": time(of),
         "day": f"{of.time.day:02}",
         "month": f"{of.time.month:02}",
         "year": f"{of.time.year:04}",
@@ -88,11 +93,11 @@ def _vtg(of: Readings) -> Fields:
         "cogtUnit": "T",
         "cogm": bearing(of.magnetic(of.course)),
         "cogmUnit": "M",
-        "sogn": _number(of.speed, 2, KNOT),
+        "sogn": number(of.speed, 2, KNOT),
         "sognUnit": "N",
-        "sogk": _number(of.speed, 2, 1.0 / 3.6),
+        "sogk": number(of.speed, 2, 1.0 / 3.6),
         "sogkUnit": "K",
-        "posMode": _mode(of.velocity),
+        "posMode": mode(of.velocity),
     }
 
 
@@ -105,13 +110,13 @@ def _hdg(of: Readings) -> Fields:
         "headingM": bearing(of.magnetic(of.heading)),
         "deviation": "",
         "deviationEW": "",
-        **_variation(of, "variation", "variationEW"),
+        **variation(of, "variation", "variationEW"),
     }
 
 
 def _rot(of: Readings) -> Fields:
     per_minute = math.radians(1.0) / 60.0
-    return {"rot": _number(of.rate_of_turn, 1, per_minute), "valid": _status(of.rate_of_turn)}
+    return {"rot": number(of.rate_of_turn, 1, per_minute), "valid": status(of.rate_of_turn)}
 
 
 def _apparent_wind(of: Readings) -> Fields:
@@ -127,9 +132,9 @@ def _mwv(wind: Pair | None, reference: str) -> Fields:
     return {
         "angle": bearing(angle),
         "reference": reference,
-        "speed": _number(speed, 2, KNOT),
+        "speed": number(speed, 2, KNOT),
         "speedu": "N",
-        "status": _status(wind),
+        "status": status(wind),
     }
 
 
@@ -137,12 +142,12 @@ def _xdr(of: Readings) -> Fields:
     """Return pitch and roll as two transducers of angle, with the names that plotters know."""
     roll, pitch = (None, None) if of.roll_pitch is None else of.roll_pitch
     fields: Fields = {}
-    for number, (name, angle) in enumerate((("PTCH", pitch), ("ROLL", roll)), start=1):
+    for count, (name, angle) in enumerate((("PTCH", pitch), ("ROLL", roll)), start=1):
         fields |= {
-            f"tdrtype_{number:02}": "A",
-            f"data_{number:02}": _number(angle, 2, math.radians(1.0)),
-            f"dataunit_{number:02}": "D",
-            f"tdrid_{number:02}": name,
+            f"tdrtype_{count:02}": "A",
+            f"data_{count:02}": number(angle, 2, math.radians(1.0)),
+            f"dataunit_{count:02}": "D",
+            f"tdrid_{count:02}": name,
         }
     return fields
 
@@ -153,44 +158,123 @@ def _vhw(of: Readings) -> Fields:
         "hgdTu": "T",
         "hdgM": bearing(of.magnetic(of.heading)),
         "hgdMu": "M",
-        "spdN": _number(of.water_speed, 2, KNOT),
+        "spdN": number(of.water_speed, 2, KNOT),
         "spdNu": "N",
-        "spdK": _number(of.water_speed, 2, 1.0 / 3.6),
+        "spdK": number(of.water_speed, 2, 1.0 / 3.6),
         "spdKu": "K",
     }
 
 
 def _dbt(of: Readings) -> Fields:
     return {
-        "depthf": _number(of.depth, 2, FOOT),
+        "depthf": number(of.depth, 2, FOOT),
         "depthfu": "f",
-        "depthm": _number(of.depth, 2),
+        "depthm": number(of.depth, 2),
         "depthmu": "M",
-        "depthfath": _number(of.depth, 2, FATHOM),
+        "depthfath": number(of.depth, 2, FATHOM),
         "depthfathu": "F",
     }
 
 
 def _dpt(of: Readings) -> Fields:
     return {
-        "depth": _number(of.depth, 2),
-        "offset": _number(of.transducer_offset, 2),
+        "depth": number(of.depth, 2),
+        "offset": number(of.transducer_offset, 2),
         "rangescale": "",
     }
 
 
 def _mtw(of: Readings) -> Fields:
     kelvin = of.water_temperature
-    return {"temp": _number(None if kelvin is None else kelvin - CELSIUS, 2), "tempu": "C"}
+    return {"temp": number(None if kelvin is None else kelvin - CELSIUS, 2), "tempu": "C"}
 
 
 def _rsa(of: Readings) -> Fields:
     return {
-        "stbdangle": _number(of.rudder, 2, math.radians(1.0)),
-        "stbdstatus": _status(of.rudder),
+        "stbdangle": number(of.rudder, 2, math.radians(1.0)),
+        "stbdstatus": status(of.rudder),
         "portangle": "",
         "portstatus": "V",  # there is one rudder, which is the starboard one
     }
+
+
+def _hdm(of: Readings) -> Fields:
+    return {"headingM": bearing(of.magnetic(of.heading)), "headingMag": "M"}
+
+
+def _mwd(of: Readings) -> Fields:
+    """Return the wind over ground, by where it comes from, clockwise from north."""
+    speed, angle = (None, None) if of.true_wind is None else of.true_wind
+    direction = None if angle is None or of.heading is None else angle + of.heading
+    return {
+        "dirT": bearing(direction),
+        "dirTu": "T",
+        "dirM": bearing(of.magnetic(direction)),
+        "dirMu": "M",
+        "speedN": number(speed, 2, KNOT),
+        "speedNu": "N",
+        "speedM": number(speed, 2),
+        "speedMu": "M",
+    }
+
+
+def _gns(of: Readings) -> Fields:
+    altitude = None if of.position is None else of.position[2]
+    return {
+        "time": time(of),
+        **place(of),
+        "posMode": mode(of.position),
+        "numSV": "00" if of.sky is None else f"{len(of.sky.satellites):02}",
+        "HDOP": "" if of.sky is None else f"{of.sky.hdop:.1f}",
+        "alt": number(altitude, 2),
+        "sep": "",
+        "diffAge": "",
+        "diffStation": "",
+        "navStatus": None,  # of version 4.1
+    }
+
+
+def _vlw(of: Readings) -> Fields:
+    """Return the distance through the water: total and trip are both that of the run."""
+    run = number(of.water_distance, 3, MILE)
+    return {
+        "twd": run,
+        "twdUnit": "N",
+        "wd": run,
+        "wdUnit": "N",
+        **dict.fromkeys(("tgd", "tgdUnit", "gd", "gdUnit")),  # of version 3.0, over ground
+    }
+
+
+def _vdr(of: Readings) -> list[Fields]:
+    """Return set and drift, over ground less through the water along the bow; none without them."""
+    if of.current is None:
+        return []
+    direction, speed = of.current
+    fields = {
+        "dirT": bearing(direction),
+        "dirTu": "T",
+        "dirM": bearing(of.magnetic(direction)),
+        "dirMu": "M",
+        "spd": number(speed, 2, KNOT),
+        "spdu": "N",
+    }
+    return [fields]
+
+
+def _rpm(of: Readings) -> list[Fields]:
+    """Return a sentence for each engine; none without one."""
+    return [
+        {
+            "source": "E",
+            "engineshaftnum": str(count),
+            "rpm": number(speed, 1, math.tau / 60.0),
+            "pitch": "",
+            "status": "A",
+        }
+        for count, speed in enumerate(of.engine_speeds, start=1)
+        if speed is not None
+    ]
 
 
 def _gsa(of: Readings) -> Fields:
@@ -215,7 +299,7 @@ def _gsv(of: Readings) -> list[Fields]:
     return [
         {
             "numMsg": str(len(groups)),
-            "msgNum": str(number),
+            "msgNum": str(count),
             "numSV": f"{len(found):02}",
             **{
                 f"{name}_{k:02}": text
@@ -229,43 +313,8 @@ def _gsv(of: Readings) -> list[Fields]:
             },
             "signalID": None,  # of version 4.1
         }
-        for number, group in enumerate(groups, start=1)
+        for count, group in enumerate(groups, start=1)
     ]
-
-
-def _xte(of: Readings) -> Fields:
-    status = _status(of.leg)
-    error = None if of.leg is None else of.leg.cross_track
-    return {
-        "gwarn": status,
-        "LCcwarn": status,
-        "ctrkerr": _number(None if error is None else abs(error), 3, MILE),
-        "dirs": "" if error is None else "L" if error > 0.0 else "R",
-        "disUnit": "N",
-        "mode": _mode(of.leg),
-    }
-
-
-def _rmb(of: Readings) -> list[Fields]:
-    """Return none without a leg, as plotters do: some readers take empty fields for zeros."""
-    leg, places = of.leg, of.waypoints
-    if leg is None or places is None:
-        return []
-    fields = {
-        "status": "A",
-        "ctrkerr": _number(min(abs(leg.cross_track) / MILE, _MOST_RMB), 2),
-        "dirs": "L" if leg.cross_track > 0.0 else "R",
-        "wptO": f"WP{leg.number - 1}",
-        "wptD": f"WP{leg.number}",
-        "lat": places[1][0],
-        "lon": places[1][1],
-        "range": _number(min(leg.distance / MILE, 999.9), 2),
-        "bearing": bearing(leg.bearing),
-        "velclos": _number(leg.closing, 2, KNOT),
-        "arrstatus": "A" if leg.arrived else "V",
-        "valstatus": "A",
-    }
-    return [fields]
 
 
 def _alone(made: Callable[[Readings], Fields]) -> Callable[[Readings], list[Fields]]:
@@ -290,45 +339,18 @@ _ALONE: dict[str, Callable[[Readings], Fields]] = {
     "MTW": _mtw,
     "RSA": _rsa,
     "GSA": _gsa,
-    "XTE": _xte,
+    "GNS": _gns,
+    "HDM": _hdm,
+    "MWD": _mwd,
+    "VLW": _vlw,
+    **ROUTE,
 }
 
 SENTENCES: dict[str, Callable[[Readings], list[Fields]]] = {
     **{name: _alone(made) for name, made in _ALONE.items()},
     "GSV": _gsv,
-    "RMB": _rmb,
+    "RPM": _rpm,
+    "VDR": _vdr,
+    **ROUTE_LEG,
 }
 """What can be sent, by formatter, and how; of wind the apparent one, R, and the true one, T."""
-
-
-def bearing(direction: float | None) -> str:
-    """Return a direction in degrees, 0.00 to 359.99."""
-    return "" if direction is None else f"{round(math.degrees(direction), 2) % 360.0:.2f}"
-
-
-def _number(value: float | None, decimals: int, unit: float = 1.0) -> str:
-    # Adding 0 takes the sign off what was rounded to minus zero.
-    return "" if value is None else f"{round(value / unit, decimals) + 0.0:.{decimals}f}"
-
-
-def _time(of: Readings) -> str:
-    return f"{of.time:%H%M%S}.{of.time.microsecond // 10_000:02}"
-
-
-def _place(of: Readings) -> Fields:
-    if of.position is None:
-        return {"lat": "", "lon": ""}
-    return {"lat": of.position[0], "lon": of.position[1]}
-
-
-def _variation(of: Readings, name: str, side: str) -> Fields:
-    degrees = round(math.degrees(of.variation), 1)
-    return {name: f"{abs(degrees):.1f}", side: "W" if degrees < 0.0 else "E"}
-
-
-def _status(reading: object) -> str:
-    return "V" if reading is None else "A"
-
-
-def _mode(reading: object) -> str:
-    return "N" if reading is None else "A"

@@ -9,6 +9,7 @@ from __future__ import annotations
 from seatrial.errors import InputError, unknown
 
 from .catalogue_navigation import NAVIGATION
+from .catalogue_read import READ
 from .pgn import FROM_NORTH, SID, Field, Pgn
 
 _DATA = {
@@ -23,7 +24,12 @@ _DATA = {
             (
                 SID,
                 Field("source", sense="0, GPS"),
-                Field("date", "date", sense="UTC: `date` at the start of the run"),
+                Field(
+                    "date",
+                    "date",
+                    "bus_heading",
+                    "UTC: `date` at the start of the run; read: for the World Magnetic Model",
+                ),
                 Field("time", "date", sense="UTC, from midnight"),
             ),
         ),
@@ -35,7 +41,7 @@ _DATA = {
             0.25,
             (
                 Field("steeringMode", "steering_mode", "bus_steering_mode"),
-                Field("headingReference", sense="true"),
+                Field("headingReference", sense="sent: true; read: both"),
                 Field("commandedRudderDirection", "commanded_rudder", sense="as the angle's sign"),
                 Field(
                     "commandedRudderAngle",
@@ -48,7 +54,12 @@ _DATA = {
                 ),
                 Field("track", "track", "bus_track", FROM_NORTH),
                 Field("rudderLimit", "rudder_limit"),
-                Field("vesselHeading", "heading", sense=FROM_NORTH),
+                Field(
+                    "vesselHeading",
+                    "heading",
+                    "bus_heading",
+                    FROM_NORTH + "; read: where no compass is",
+                ),
             ),
         ),
         Pgn(
@@ -88,8 +99,18 @@ _DATA = {
                     "bus_heading",
                     FROM_NORTH + "; true or magnetic by `reference`",
                 ),
-                Field("deviation", "deviation", sense="positive east; read: added if magnetic"),
-                Field("variation", "variation", sense="positive east; read: added if magnetic"),
+                Field(
+                    "deviation",
+                    "deviation",
+                    "bus_magnetic_heading",
+                    "positive east; read: added if magnetic",
+                ),
+                Field(
+                    "variation",
+                    "variation",
+                    "bus_variation",
+                    "positive east; read: added if magnetic",
+                ),
                 Field("reference", "heading_reference"),
             ),
         ),
@@ -124,7 +145,7 @@ _DATA = {
                 SID,
                 Field("source", sense="0, manual"),
                 Field("ageOfService", "date", sense="days since 1970, UTC"),
-                Field("variation", "variation", sense="positive east"),
+                Field("variation", "variation", "bus_variation", "positive east"),
             ),
         ),
         Pgn(
@@ -151,11 +172,18 @@ _DATA = {
             0.5,
             (
                 Field("instance", sense="0 for `e1`, and so on: one message each"),
-                Field("temperature", "engine_temperature"),
-                Field("alternatorPotential", "engine_voltage", sense="the engine's supply"),
+                Field("temperature", "engine_temperature", "bus_engine_temperature"),
+                Field("oilPressure", "", "bus_engine_oil_pressure"),
+                Field("fuelRate", "", "bus_engine_fuel_rate"),
+                Field(
+                    "alternatorPotential",
+                    "engine_voltage",
+                    "bus_engine_voltage",
+                    "the engine's supply",
+                ),
                 Field("discreteStatus1", sense="0, no warnings"),
                 Field("discreteStatus2", sense="0, no warnings"),
-                Field("engineLoad", "engine_load", sense="the magnitude"),
+                Field("engineLoad", "engine_load", "bus_engine_load", "the magnitude"),
             ),
         ),
         Pgn(
@@ -172,7 +200,12 @@ _DATA = {
                     "bus_water_speed",
                     "ahead; astern is not available",
                 ),
-                Field("speedGroundReferenced", "velocity_n", "", "the magnitude"),
+                Field(
+                    "speedGroundReferenced",
+                    "velocity_n",
+                    "bus_speed_over_ground",
+                    "the magnitude; read: where 129026 has none",
+                ),
             ),
         ),
         Pgn(
@@ -187,7 +220,8 @@ _DATA = {
                 Field(
                     "offset",
                     "transducer_offset",
-                    sense="positive up to the waterline, negative down to the keel",
+                    "bus_depth_offset",
+                    "positive up to the waterline, negative down to the keel",
                 ),
             ),
         ),
@@ -210,9 +244,9 @@ _DATA = {
             0.25,
             (
                 SID,
-                Field("cogReference", sense="true; read: only that"),
-                Field("cog", "velocity_n", "bus_velocity_n", FROM_NORTH),
-                Field("sog", "velocity_n", "bus_velocity_n", "the magnitude"),
+                Field("cogReference", sense="sent: true; read: both"),
+                Field("cog", "velocity_n", "bus_course", FROM_NORTH),
+                Field("sog", "velocity_n", "bus_speed_over_ground", "the magnitude"),
             ),
         ),
         Pgn(
@@ -223,13 +257,18 @@ _DATA = {
             1.0,
             (
                 SID,
-                Field("date", "date", sense="UTC: `date` at the start of the run"),
+                Field(
+                    "date",
+                    "date",
+                    "bus_heading",
+                    "UTC: `date` at the start of the run; read: for the World Magnetic Model",
+                ),
                 Field("time", "date", sense="UTC, from midnight"),
                 Field("latitude", "position_n", "bus_position_n", "WGS 84, north"),
                 Field("longitude", "position_n", "bus_position_n", "WGS 84, east"),
                 Field("altitude", "position_n", "bus_position_n", "WGS 84, as the origin's"),
                 Field("gnssType", sense="0, GPS"),
-                Field("method", "position_valid", sense="1 GNSS fix, 0 none"),
+                Field("method", "position_valid", "bus_position_valid", "1 GNSS fix, 0 none"),
                 Field("integrity", sense="0, not checked"),
                 Field("numberOfSvs", sense="of a nominal GPS constellation"),
                 Field("hdop", sense="of that constellation"),
@@ -252,7 +291,13 @@ _DATA = {
                     "bus_wind_angle",
                     "where it comes from, from the bow to starboard; the ports: where it blows to",
                 ),
-                Field("reference", sense="2, apparent; for `true_wind` 0, ground and north"),
+                Field(
+                    "reference",
+                    "",
+                    "bus_true_wind",
+                    "2, apparent; for `true_wind` 0, ground and north; read: 1, ground and "
+                    "magnetic north, 3, ground and bow, 4, water and bow too",
+                ),
             ),
         ),
     )
@@ -275,9 +320,15 @@ NETWORK = {
 }
 """Messages about the network, which every node sends and reads, by number."""
 
-ALL = {**DATA, **NETWORK}
+ALL = {**DATA, **READ, **NETWORK}
 
-RECEIVED = tuple(number for number, pgn in DATA.items() if any(f.received for f in pgn.fields))
+READABLE = dict(sorted((DATA | READ).items()))
+"""Messages about the vessel and what is round it, those that a node only reads too."""
+
+RECEIVED = (
+    *(number for number, pgn in READABLE.items() if any(f.received for f in pgn.fields)),
+    130315,
+)
 """Messages about the vessel that a node reads."""
 
 

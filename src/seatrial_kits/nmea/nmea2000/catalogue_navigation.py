@@ -5,19 +5,19 @@ from __future__ import annotations
 from .pgn import FROM_NORTH, SID, Field, Pgn
 
 _SHIP = (
-    Field("userId", "ais", sense="MMSI"),
-    Field("longitude", "ais", sense="WGS 84, east"),
-    Field("latitude", "ais", sense="WGS 84, north"),
+    Field("userId", "ais", "bus_ais_mmsi", "MMSI"),
+    Field("longitude", "ais", "bus_ais_east", "WGS 84, east"),
+    Field("latitude", "ais", "bus_ais_north", "WGS 84, north"),
     Field("timeStamp", "ais", sense="second of UTC"),
-    Field("cog", "ais", sense=FROM_NORTH),
-    Field("sog", "ais"),
-    Field("heading", "ais", sense=FROM_NORTH),
+    Field("cog", "ais", "bus_ais_velocity_north", FROM_NORTH),
+    Field("sog", "ais", "bus_ais_velocity_north"),
+    Field("heading", "ais", "bus_ais_heading", FROM_NORTH),
 )
 _HULL = (
     Field("typeOfShip", "ais"),
     Field("callsign", "ais"),
-    Field("length", "ais"),
-    Field("beam", "ais"),
+    Field("length", "ais", "bus_ais_length"),
+    Field("beam", "ais", "bus_ais_beam"),
     Field("positionReferenceFromStarboard", "ais"),
     Field("positionReferenceFromBow", "ais"),
 )
@@ -69,8 +69,8 @@ NAVIGATION = {
             (
                 SID,
                 Field("xteMode", sense="0, autonomous"),
-                Field("navigationTerminated", "leg", sense="1 without a leg"),
-                Field("xte", "position_n", sense="positive to starboard of the leg"),
+                Field("navigationTerminated", "leg", "bus_cross_track_valid", "1 without a leg"),
+                Field("xte", "position_n", "bus_cross_track", "positive to starboard of the leg"),
             ),
         ),
         Pgn(
@@ -81,20 +81,30 @@ NAVIGATION = {
             1.0,
             (
                 SID,
-                Field("distanceToWaypoint", "leg_to"),
-                Field("courseBearingReference", sense="true"),
-                Field("perpendicularCrossed", "leg_to"),
-                Field("arrivalCircleEntered", "leg_radius"),
+                Field("distanceToWaypoint", "leg_to", "bus_waypoint_distance"),
+                Field("courseBearingReference", sense="sent: true; read: both"),
+                Field("perpendicularCrossed", "leg_to", "bus_arrived"),
+                Field("arrivalCircleEntered", "leg_radius", "bus_arrived"),
                 Field("calculationType", sense="1, rhumb line"),
                 Field("etaTime", "leg_to", sense="UTC, at the closing velocity"),
                 Field("etaDate", "leg_to", sense="UTC, at the closing velocity"),
-                Field("bearingOriginToDestinationWaypoint", "leg_from", sense=FROM_NORTH),
-                Field("bearingPositionToDestinationWaypoint", "leg_to", sense=FROM_NORTH),
+                Field(
+                    "bearingOriginToDestinationWaypoint",
+                    "leg_from",
+                    "bus_leg_direction",
+                    FROM_NORTH,
+                ),
+                Field(
+                    "bearingPositionToDestinationWaypoint",
+                    "leg_to",
+                    "bus_waypoint_bearing",
+                    FROM_NORTH,
+                ),
                 Field("originWaypointNumber", "leg", sense="one less"),
-                Field("destinationWaypointNumber", "leg"),
-                Field("destinationLatitude", "leg_to", sense="WGS 84, north"),
-                Field("destinationLongitude", "leg_to", sense="WGS 84, east"),
-                Field("waypointClosingVelocity", "velocity_n"),
+                Field("destinationWaypointNumber", "leg", "bus_waypoint_number"),
+                Field("destinationLatitude", "leg_to", "bus_waypoint_n", "WGS 84, north"),
+                Field("destinationLongitude", "leg_to", "bus_waypoint_n", "WGS 84, east"),
+                Field("waypointClosingVelocity", "velocity_n", "bus_closing_speed"),
             ),
         ),
         Pgn(
@@ -154,7 +164,7 @@ NAVIGATION = {
             (
                 Field("userId", "ais", sense="MMSI"),
                 Field("imoNumber", "ais"),
-                Field("name", "ais"),
+                Field("name", "ais", "bus_ais_names"),
                 *_HULL,
                 Field("draft", "ais"),
                 Field("destination", "ais"),
@@ -167,7 +177,11 @@ NAVIGATION = {
             "AIS class B static data, part A",
             6,
             0.0,
-            (Field("userId", "ais", sense="MMSI"), Field("name", "ais"), _RECEIVED),
+            (
+                Field("userId", "ais", sense="MMSI"),
+                Field("name", "ais", "bus_ais_names"),
+                _RECEIVED,
+            ),
         ),
         Pgn(
             129810,

@@ -3,32 +3,42 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from functools import lru_cache, partial
+from functools import partial
 from typing import Any, ClassVar
 
 from seatrial.errors import InputError
-from seatrial.links.geodesy import Ned, Origin
+from seatrial.links.geodesy import Origin
 from seatrial.links.parameter_validation import serial_number, start_us, whole_number
 from seatrial.links.text import Inbox
+from seatrial.links.unconnected import is_connected
 from seatrial.model.component import NS, Component
 from seatrial_kits.can.node import CanNode
 from seatrial_kits.can.operations import Transmit
 
 from ..ais.codec import Assembly
+from ..received.directions import Variation
+from ..received.memory import Received, Values, preferred_sources
+from ..received.outputs import ORDERED, QUANTITIES
+from ..received.publishing import Publisher, position
+from ..received.targets import Targets
 from .address_claim import AddressClaim
-from .catalogue import DATA, intervals, sends
+from .ais_reports import AIS_PGNS, report
+from .catalogue import ALL, DATA, READABLE, intervals, sends
 from .codec import GLOBAL, Decoder, Encoder, Message, header
 from .group_functions import serve
 from .measurements import messages
 from .name import Identity, name_of
-from .ports import ENGINES, Nmea2000Ports
-from .received import Received
+from .ports import Nmea2000Ports
+from .quantities import LATE, READERS
 from .services import HEARTBEAT_S, answer, heartbeat
 from .traffic import traffic
 
 _SIDS = 253
 """Sequence identifiers run from 0 to 252."""
 _NETWORK = (59904, 60928, 126208)
+_DAY_S = 86400.0
+_INTERVALS = 3
+"""Standard intervals of a PGN for which its values are valid at least."""
 _STREAMS = 1 << 62
 """Streams of random numbers: that of the delays is the NAME's, so that nodes of one seed differ."""
 
@@ -52,8 +62,12 @@ class Nmea2000(Nmea2000Ports):
     of a nominal GPS constellation above the position. **AIS**: sentences of an `ais-transponder` on
     ``ais`` go out as their PGNs when they come, if ``sends`` has those.
 
-    **Reads** the PGNs of `catalogue.RECEIVED` from all other nodes: the outputs ``bus_...``, with
-    whether they are valid (`Received`). A magnetic heading is, if its message has the variation.
+    **Reads** the PGNs of `catalogue.RECEIVED` from all other nodes: the outputs ``bus_...``, each
+    quantity with whether it is valid (`Received`), of sources as ``prefer`` has them. Magnetic
+    directions become true ones by the variation of their message, of the network (127258), of the
+    input ``variation``, or of the World Magnetic Model at the position received or an origin that
+    is not 0, 0; ``bus_heading_from`` says which. ``bus_messages`` counts, by PGN, the messages that
+    had a value; ``bus_others`` messages that are not read, and frames of PGNs that are not known.
 
     **Answers** ISO requests (`services.answer`) and group functions (`group_functions.serve`):
     other nodes may change its intervals, and command fields of 127237 and 127245 if it sends those.
@@ -77,6 +91,7 @@ class Nmea2000(Nmea2000Ports):
     feedthrough: ClassVar = {}
     discrete = True
     transient = Component.transient | {"_identity", "_claim", "_encoder", "_decoder", "_readings"}
+    transient |= {"_targets", "_publisher", "_rudder"}
 
     # ------------------------------------------------------------------ running
 
@@ -100,6 +115,9 @@ class Nmea2000(Nmea2000Ports):
         self._sequences: dict[str, int] = {}
         self._unfinished: dict[str, dict[str, list[list[Any]]]] = {}
         self._values: dict[str, Any] = {}
+        self._stations: dict[str, Any] = {}
+        self._used: dict[str, list[int]] = {}
+        self._unread: dict[str, int] = {}
         self._ais_in: dict[str, Any] = {}
         self._ais_parts: dict[str, list[str]] = {}
         self._sent = self._received = 0
@@ -114,12 +132,15 @@ class Nmea2000(Nmea2000Ports):
         """Read what has come, and send what is due from ``t`` to before ``t + h``."""
         now, end = self.now_ns, self.now_ns + round(h * NS)
         node, queue = CanNode(self._can), []
-        for when, operation in node.receive(self.rx):
+        frames = node.receive(self.rx)
+        for when, operation in frames:
             if isinstance(operation, Transmit):
                 source = header(operation.frame)[1]
                 self._claim.receive_source(source)
                 message = self._decoder.decode(operation.frame)
-                if message is not None:
+                if message is None:
+                    self._count_unread(header(operation.frame)[0])
+                else:
                     self._received += 1
                     queue += [(now, each) for each in self._receive(when, message)]
         queue += self._received_messages(now)
@@ -135,11 +156,13 @@ class Nmea2000(Nmea2000Ports):
         # Mostly little is new, and all of it is requested often.
         expired = self._changes <= end
         names = self._readings.names() if expired else dict.fromkeys(self._news)
-        for name in names:
-            self._publish(name, end)
-        if names or expired or queue:
+        self._publisher.publish(names, end)
+        if expired or "ais" in names:
+            self._publisher.publish_targets(end)
+        if frames or expired or queue:
             self._publish_network()
-            self._changes = min(self._readings.expires(end), self._claim.changes_ns)
+            ends = self._readings.expires(end), self._targets.expires(end)
+            self._changes = min(*ends, self._claim.changes_ns)
         self._news = []
 
     def set_state(self, state: Mapping[str, Any]) -> None:
@@ -155,43 +178,11 @@ class Nmea2000(Nmea2000Ports):
         self.claimed_address = 254 if address is None else address
         self.contests, self.twins = self._claim.contests, self._claim.twins
         self.sent, self.received = self._sent, self._received
-
-    def _publish(self, name: str, now: int) -> None:
-        """Set the outputs of a quantity to what is valid at ``now``."""
-        values, valid = self._readings.get(name, now)
-        assert values is not None
-        if name in _PUBLISHED:
-            turned = name in _RUDDERS and self.rudder_positive == "port"
-            setattr(self, f"bus_{name}", -values[0] if turned else values[0])
-            setattr(self, f"bus_{name}_valid", valid)
-        elif name in ("place", "altitude"):
-            self._publish_position(now)
-        elif name == "velocity":
-            self.bus_velocity_n, self.bus_velocity_valid = (*values, 0.0), valid
-        elif name == "wind":
-            self.bus_wind_speed, self.bus_wind_angle = values
-            self.bus_wind_valid = valid
-        elif name == "attitude":
-            self.bus_attitude, self.bus_attitude_valid = values, valid
-        elif name == "steering_mode":
-            self.bus_steering_mode = int(values[0]) if valid else -1
-        elif name == "rudder_direction":
-            self.bus_rudder_direction = int(values[0]) if valid else 0
-        else:
-            self._publish_engines(now)
-
-    def _publish_position(self, now: int) -> None:
-        place, self.bus_position_valid = self._readings.get("place", now)
-        altitude, _ = self._readings.get("altitude", now)
-        if place is not None:
-            height = self.altitude if altitude is None else altitude[0]
-            self.bus_position_n = _position(self._origin(), place[0], place[1], height)
-
-    def _publish_engines(self, now: int) -> None:
-        engines = [self._readings.get(f"engine {number}", now) for number in range(ENGINES)]
-        self.bus_engine_speed = [
-            values[0] if values is not None and valid else 0.0 for values, valid in engines
-        ]
+        self.bus_sources = self._readings.sources(self.now_ns)
+        used = sorted(self._used.items())
+        self.bus_messages = "; ".join(f"{pgn} {some}/{all_}" for pgn, (some, all_) in used)
+        unread = sorted(self._unread.items())
+        self.bus_others = "; ".join(f"{pgn} {count}" for pgn, count in unread)
 
     # ------------------------------------------------------------------ inside
 
@@ -202,8 +193,19 @@ class Nmea2000(Nmea2000Ports):
         first = whole_number("address", self.address)
         self._claim = AddressClaim(self._claiming, self._name, first, arbitrary, self._delay)
         self._encoder, self._decoder = Encoder(self._sequences), Decoder(self._unfinished)
-        rudder = whole_number("rudder_instance", self.rudder_instance)
-        self._readings = Received(self._values, round(self.timeout * NS), rudder)
+        self._rudder = whole_number("rudder_instance", self.rudder_instance)
+        preferred = preferred_sources(self.prefer, QUANTITIES)
+        self._readings = Received(self._values, round(self.timeout * NS), preferred)
+        self._targets = Targets(self._stations)
+        self._publisher = Publisher(
+            self,
+            "bus_",
+            self._readings,
+            self._targets,
+            self._origin(),
+            self._given_variation,
+            lambda: (self._epoch_ns + self.now_ns) / NS / _DAY_S,
+        )
 
     def _delay(self, number: int) -> float:
         return float(self.generator(number, self._name % _STREAMS).random())
@@ -218,7 +220,7 @@ class Nmea2000(Nmea2000Ports):
         if message.destination not in (GLOBAL, own):
             return []
         if message.pgn not in _NETWORK:
-            self._news += self._readings.take(when, message)
+            self._news += self._take(when, message)
             return []
         if message.pgn == 59904 and message.fields.get("pgn") == 60928:
             self._claim.receive_request(self.now_ns)
@@ -232,10 +234,61 @@ class Nmea2000(Nmea2000Ports):
             found += [each for pgn in due for each in self._now(pgn)]
         return [self._from(own, each) for each in found]
 
+    def _take(self, when: int, message: Message) -> list[str]:
+        """Take in a message about the vessel or other ships; return what it changed."""
+        pgn = message.pgn
+        if pgn in AIS_PGNS:
+            return self._take_ais(when, message)
+        if pgn not in READERS:
+            self._count_unread(pgn)
+            return []
+        read = self._read(message)
+        self._count(pgn, any(values is not None for values in read.values()))
+        least = round(_INTERVALS * READABLE[pgn].interval_s * NS)
+        late = LATE.get(pgn, ())
+        return self._readings.take(when, str(message.source), str(pgn), read, least, late)
+
+    def _take_ais(self, when: int, message: Message) -> list[str]:
+        found = report(message.pgn, message.fields)
+        self._count(message.pgn, found is not None)
+        if found is None:
+            return []
+        place = None
+        if "latitude" in found and "longitude" in found:
+            place = position(self._origin(), found["latitude"], found["longitude"], 0.0)
+        self._targets.take(when, found, place)
+        return ["ais"]
+
+    def _read(self, message: Message) -> Values:
+        """Return what a message says of quantities that are read here."""
+        instance = message.fields.get("instance")
+        if message.pgn == 127245 and instance not in (self._rudder, None):
+            return {}
+        return READERS[message.pgn](message.fields)
+
+    def _count(self, pgn: int, used: bool) -> None:
+        counts = self._used.setdefault(str(pgn), [0, 0])
+        counts[0] += used
+        counts[1] += 1
+
+    def _count_unread(self, pgn: int) -> None:
+        """Count a message that is not read, or a frame of a PGN that is not known."""
+        if pgn not in ALL or (pgn in DATA and pgn not in READERS and pgn not in AIS_PGNS):
+            self._unread[str(pgn)] = self._unread.get(str(pgn), 0) + 1
+
+    def _given_variation(self) -> Variation | None:
+        value: float = self.variation
+        return Variation(value, "the input variation") if is_connected(value) else None
+
     def _obey(
         self, when: int, order: Message, wanted: Sequence[str]
     ) -> tuple[list[str], list[str]]:
-        changed, held = self._readings.command(when, order, wanted)
+        read, pgn = self._read(order), order.pgn
+        least = round(_INTERVALS * DATA[pgn].interval_s * NS)
+        source = str(order.source)
+        if self._publisher.variation(self.now_ns) is None:  # a magnetic order has no true sense
+            read = {k: None if k in ORDERED and v and v[1] else v for k, v in read.items()}
+        changed, held = self._readings.command(when, source, str(pgn), read, wanted, least)
         self._news += changed
         return changed, held
 
@@ -308,24 +361,3 @@ class Nmea2000(Nmea2000Ports):
             load_equivalency=whole_number("load_equivalency", self.load_equivalency),
             description=self.description,
         )
-
-
-_PUBLISHED = (
-    "heading",
-    "rate_of_turn",
-    "rudder",
-    "rudder_order",
-    "water_speed",
-    "depth",
-    "heading_to_steer",
-    "track",
-    "commanded_rudder",
-)
-"""Quantities of one value that go to outputs of their name."""
-_RUDDERS = ("rudder", "rudder_order", "commanded_rudder")
-"""Those with the sign of rudders."""
-
-
-@lru_cache(64)  # nodes of one profile have one origin
-def _position(origin: Origin, latitude: float, longitude: float, altitude: float) -> Ned:
-    return origin.position(latitude, longitude, altitude)

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+import math
 from collections import Counter
-from collections.abc import Iterator
 from pathlib import Path
 
 from seatrial.errors import InputError
@@ -15,24 +15,35 @@ from .codec import Decoder, Message, header, is_fast
 from .quantities import READERS
 
 _FIX = 129029
-_NO_GNSS = _TRUE = 0
+_NO_GNSS = 0
 _CHANNELS: dict[str, tuple[tuple[str, str], ...]] = {
     "heading": (("heading", "rad"),),
+    "magnetic_heading": (("magnetic_heading", "rad"),),
+    "variation": (("variation", "rad"),),
     "rate_of_turn": (("rate_of_turn", "rad/s"),),
+    "roll": (("roll", "rad"),),
+    "pitch": (("pitch", "rad"),),
+    "yaw": (("yaw", "rad"),),
     "rudder": (("rudder", "rad"),),
     "rudder_order": (("rudder_order", "rad"),),
     "place": (("latitude", "deg"), ("longitude", "deg")),
     "altitude": (("altitude", "m"),),
+    "course": (("course", "rad"),),
+    "speed_over_ground": (("speed", "m/s"),),
     "water_speed": (("water_speed", "m/s"),),
     "depth": (("depth", "m"),),
-    "wind": (("wind_speed", "m/s"), ("wind_angle", "rad")),
+    "wind_speed": (("wind_speed", "m/s"),),
+    "wind_angle": (("wind_angle", "rad"),),
+    "ground_wind_speed": (("ground_wind_speed", "m/s"),),
+    "wind_direction": (("wind_direction", "rad"),),
+    "water_temperature": (("water_temperature", "K"),),
+    "air_temperature": (("air_temperature", "K"),),
+    "air_pressure": (("air_pressure", "Pa"),),
+    "cross_track": (("cross_track", "m"),),
 }
 """Channels of the quantities of `READERS`, with units."""
-_FIELDS: dict[int, tuple[tuple[str, str, str], ...]] = {
-    127257: (("roll", "roll", "rad"), ("pitch", "pitch", "rad"), ("yaw", "yaw", "rad")),
-    129026: (("sog", "speed", "m/s"),),
-}
-"""Fields that are channels each for itself, by PGN: a node wants all of them, or none."""
+_REFERRED = ("magnetic_heading", "magnetic_course", "magnetic_wind_direction")
+"""Quantities that a variation turns into true ones."""
 
 
 def read(path: Path) -> Log:
@@ -47,6 +58,7 @@ def read(path: Path) -> Log:
     skipped: Counter[str] = Counter()
     decoder, samples = Decoder({}), Samples()
     others, begun = set(), None
+    variation: list[float] = []
     for row, time, _, frame in recorded_frames(path, skipped, is_fast):
         if not frame.extended or frame.remote or frame.fd:
             continue
@@ -60,7 +72,7 @@ def read(path: Path) -> Log:
             if pgn == _FIX and message.fields.get("method") == _NO_GNSS:
                 skipped["positions (129029) without a fix are left out"] += 1
             else:
-                _add(samples, message, time - begun, row)
+                _add(samples, message, time - begun, row, variation, skipped)
     if begun is None:
         raise InputError(f"{path}: no frame of an NMEA 2000 network was found")
     notes = [f"{count} {what}" for what, count in skipped.items()]
@@ -69,24 +81,29 @@ def read(path: Path) -> Log:
     return Log(path, samples.channels(), start=date_of(begun), notes=tuple(notes), row="line")
 
 
-def _add(samples: Samples, message: Message, time: float, row: int) -> None:
-    for name, unit, value in _values(message):
-        if value is not None:
-            where = f"{message.pgn}.{name}"
-            samples.add(where, unit, time, float(value), row, str(message.source))
-
-
-def _values(message: Message) -> Iterator[tuple[str, str, float | None]]:
-    """Yield name, unit and value of the channels of a message."""
-    fields = message.fields
-    for field, name, unit in _FIELDS.get(message.pgn, ()):
-        yield name, unit, fields.get(field)
-    if message.pgn == 129026 and fields.get("cogReference") == _TRUE:
-        yield "course", "rad", fields.get("cog")
-    instance = fields.get("instance") if message.pgn == 127245 else 0
+def _add(
+    samples: Samples,
+    message: Message,
+    time: float,
+    row: int,
+    variation: list[float],
+    skipped: Counter[str],
+) -> None:
+    """Add the values of a message; ``variation`` has the last one on the bus, if there was one."""
+    values = READERS[message.pgn](message.fields)
+    variation[:] = values.get("variation") or variation
+    for name in _REFERRED:
+        shown = values.get(name)
+        if shown is not None and (shown[1:] or variation):
+            true = shown[0] + (shown[1] if shown[1:] else variation[0])
+            values[name.removeprefix("magnetic_")] = (true % math.tau,)
+        elif shown is not None:
+            skipped[f"magnetic directions ({message.pgn}) before the first variation"] += 1
+    instance = message.fields.get("instance") if message.pgn == 127245 else 0
     suffix = f"[{instance}]" if instance else ""
-    for quantity, values in READERS[message.pgn](fields).items():
-        engine = ((quantity, "rad/s"),) if quantity.startswith("engine ") else ()
-        named = zip(_CHANNELS.get(quantity, engine), values or (), strict=False)
+    for quantity, found in values.items():
+        engine = ((quantity, "rad/s"),) if quantity.startswith("engine_speed ") else ()
+        named = zip(_CHANNELS.get(quantity, engine), found or (), strict=False)
         for (name, unit), value in named:
-            yield name + suffix, unit, value
+            where = f"{message.pgn}.{name}{suffix}"
+            samples.add(where, unit, time, float(value), row, str(message.source))

@@ -7,10 +7,11 @@ from collections.abc import Callable
 
 from seatrial.links.geodesy import Origin
 
+from ..received.outputs import ENGINES
 from .codec import Fields, Message
 from .measured import ANGLE_DIGITS, TRUE, Measured, compass
 from .navigation_messages import NAVIGATION_MAKERS
-from .ports import ENGINES, Nmea2000Ports
+from .ports import Nmea2000Ports
 
 _MAGNETIC, _APPARENT = 1, 2
 _MODES = range(6)

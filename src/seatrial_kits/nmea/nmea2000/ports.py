@@ -15,11 +15,10 @@ from seatrial.model.component import (
     terminal,
 )
 
+from ..received.memory import preferred_sources
+from ..received.outputs import ENGINES, QUANTITIES, received_outputs
 from .address_claim import HIGHEST
 from .catalogue import check_intervals, check_sends
-
-ENGINES = 4
-"""Most engines of a node."""
 
 _NED = ("north", "east", "down")
 _EULER = ("phi", "theta", "psi")
@@ -35,11 +34,12 @@ def _valid(what: str) -> Input:
     return Input("1", f"whether {what} is valid", type=bool, start=True, optional=True)
 
 
-def _received(what: str) -> Output:
-    return Output("1", f"whether {what} has been received lately", type=bool)
+def check_preferred(text: str) -> None:
+    """Raise InputError for a text that `prefer` refuses."""
+    preferred_sources(text, QUANTITIES)
 
 
-class Nmea2000Ports(Noise, Component):
+class Nmea2000Ports(received_outputs("bus_"), Noise, Component):  # type: ignore[misc]
     """Parameters, inputs and outputs of `Nmea2000`."""
 
     sends = Parameter("", "1", "PGNs that it sends, separated by spaces", check=check_sends)
@@ -90,7 +90,14 @@ class Nmea2000Ports(Noise, Component):
         choices=("port", "starboard"),
     )
     timeout = Parameter(
-        1.0, "s", "time for which a received value is valid, at least 3 intervals", min=0.0
+        1.0, "s", "time for which a received value is valid, at least 3 of its intervals", min=0.0
+    )
+
+    prefer = Parameter(
+        "",
+        "1",
+        "QUANTITY ADDRESS of sources to use, the best first; with ;",
+        check=check_preferred,
     )
 
     rx = Input("1", "operations from the bus", type=str, role="can")
@@ -150,36 +157,6 @@ class Nmea2000Ports(Noise, Component):
     twins = Output("1", "claims by others under its own NAME", type=int)
     sent = Output("1", "messages sent", type=int)
     received = Output("1", "messages understood", type=int)
-    bus_heading = Output("rad", "true heading, clockwise from north")
-    bus_heading_valid = _received("a true heading")
-    bus_rate_of_turn = Output("rad/s", "rate of turn, to starboard")
-    bus_rate_of_turn_valid = _received("a rate of turn")
-    bus_attitude = Output("rad", "Euler angles, ZYX", axes=_EULER)
-    bus_attitude_valid = _received("an attitude")
-    bus_rudder = Output("rad", "angle of the rudder, in the sense of rudder_positive")
-    bus_rudder_valid = _received("an angle of the rudder")
-    bus_rudder_order = Output("rad", "rudder angle ordered, in the same sense")
-    bus_rudder_order_valid = _received("a rudder angle ordered")
-    bus_rudder_direction = Output("1", "way the rudder is to move: 1 starboard, -1 port", type=int)
-    bus_water_speed = Output("m/s", "speed through the water, ahead")
-    bus_water_speed_valid = _received("a speed through the water")
-    bus_depth = Output("m", "depth of the water below the transducer")
-    bus_depth_valid = _received("a depth")
-    bus_position_n = Output("m", "position, north-east-down", axes=_NED)
-    bus_position_valid = _received("a position")
-    bus_velocity_n = Output("m/s", "velocity over ground, north-east-down", axes=_NED)
-    bus_velocity_valid = _received("a velocity over ground")
-    bus_wind_speed = Output("m/s", "speed of the apparent wind")
-    bus_wind_angle = Output("rad", "where the apparent wind blows to from the bow, to starboard")
-    bus_wind_valid = _received("an apparent wind")
-    bus_engine_speed = Output("rad/s", "speeds of the engines, 0 if not received", axes=_ENGINES)
-    bus_steering_mode = Output("1", "as `steering_mode`, -1 for none", type=int, start=-1)
-    bus_heading_to_steer = Output("rad", "heading to steer, clockwise from north")
-    bus_heading_to_steer_valid = _received("a heading to steer")
-    bus_track = Output("rad", "track to keep, clockwise from north")
-    bus_track_valid = _received("a track to keep")
-    bus_commanded_rudder = Output("rad", "rudder commanded, in the same sense")
-    bus_commanded_rudder_valid = _received("a commanded rudder")
 
     terminals: ClassVar = {
         "bus": terminal("tx", "rx"),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import resource
 import subprocess
 import sys
@@ -153,3 +154,75 @@ def _read_all(folder: Path) -> None:
 
 if __name__ == "__main__":
     _read_all(Path(sys.argv[1]))
+
+
+USED = message(2, signal("Level", "0|8@1+", '(1,0) [0|100] "%" B'), number=7, name="Used")
+ODD_LINES = {
+    "overlap": message(1, signal("A"), signal("B", "4|8@1+"), number=8, name="Unused"),
+    "syntax in a signal": message(1, '64_BIT : 0|8@1+ (1,0) [0|1] "" B', number=8, name="Un"),
+    "syntax in a message": "BO_ 8 2017_5: 8 B\n SG_ A : 0|8@1+ (1,0) [0|1] \"\" B\n",
+    "identifier": message(8, signal(), number=0x10630000, name="Unused"),
+    "two of one identifier": message(1, signal(), number=8, name="A")
+    + message(1, signal(), number=8, name="B"),
+    "the identifier of the used one": message(1, signal(), number=7, name="B"),
+    "two of one name": message(1, signal(), number=8, name="A") * 2,
+    "values of nothing": 'VAL_ 8 Gone 0 "off" 1 "on" ;\nVAL_ 7 Gone 0 "off" ;\n',
+    "comments of nothing": 'CM_ 145 "of a message";\nCM_ SG_ 304 "no signal";\n',
+    "keywords in a comment": 'CM_ BO_ 8 "first\nBO_ 9 Not: 8 B\n SG_ There : 0|8@1+";\n',
+    "attribute of nothing": 'BA_ "Unheard" BO_ 8 5;\nBA_ "GenSigStartValue" SG_ 7 Gone 3;\n',
+    "no statement": "\nthis is no DBC at all\n",
+    "two in a line": 'BO_TX_BU_ 8 : A,B; BO_ 10 Third: 1 B\n SG_ C : 0|8@1+ (1,0) [0|0] "" B\n',
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("odd", ODD_LINES)
+@pytest.mark.parametrize("before", [False, True])
+def test_messages_that_are_not_asked_for_do_not_matter(tmp_path, odd, before):
+    file = tmp_path / "bus.dbc"
+    both = (ODD_LINES[odd], USED) if before else (USED, ODD_LINES[odd])
+    file.write_text(HEAD + "".join(both), "utf-8")
+    node = signals(file, sends="Used.Level", cycle_time=0.1)
+    assert (node._sends[0].low, node._sends[0].high) == (0.0, 100.0)
+    assert node.get("notes") == ""
+
+
+def test_a_fault_in_a_message_that_is_asked_for_is_an_error_with_its_line(tmp_path):
+    file = tmp_path / "bus.dbc"
+    file.write_text(HEAD + USED + ODD_LINES["syntax in a signal"], "utf-8")
+    line = file.read_text().splitlines().index(' SG_ 64_BIT : 0|8@1+ (1,0) [0|1] "" B') + 1
+    with pytest.raises(InputError, match=rf"bus\.dbc: .*line {line}, column"):
+        signals(file, sends="Un.64_BIT", cycle_time=0.1)
+    with pytest.raises(InputError, match=r"unknown message 'Usd'; did you mean 'Used'"):
+        signals(file, sends="Usd.Level")
+
+
+def test_units_in_words_and_limits_beyond_the_bits_are_notes(tmp_path):
+    file = tmp_path / "own.dbc"
+    rpm = signal("Rpm", "0|8@1-", '(1,0) [0|65535] "" B')
+    state = signal("State", "8|8@1+", '(1,0) [0|255] "state" B')
+    far = signal("Far", "16|8@1+", '(1,0) [7000|9000] "" B')
+    file.write_text(HEAD + message(3, rpm, state, far, number=528, name="Status"), "utf-8")
+    node = signals(file, sends="Status.Rpm; Status.State; Status.Far", cycle_time=0.1)
+    assert [(m.low, m.high) for m in node._sends] == [(0.0, 127.0), (0.0, 255.0), (0.0, 255.0)]
+    notes = node.get("notes").split("; ")
+    assert len(notes) == 3
+    assert "Status.Rpm has limits 0 to 65535" in notes[0]
+    assert "'state' is not a unit" in notes[1]
+    with pytest.raises(InputError, match="'state' is not a unit"):
+        signals(file, sends="Status.State 0 1 m")
+
+
+@pytest.mark.parametrize(
+    ("written", "factor", "offset"),
+    [("RPM", math.tau / 60.0, 0.0), ("Nm", 1.0, 0.0), ("kph", 1 / 3.6, 0.0), ("Degrees C", 1.0, 273.15),
+     ("Volts", 1.0, 0.0), ("Bar", 1e5, 0.0), ("C", 1.0, 273.15), ("Percent", 0.01, 0.0)],
+)  # fmt: skip
+def test_units_are_read_as_people_write_them(tmp_path, written, factor, offset):
+    file = tmp_path / "own.dbc"
+    text = signal("Value", "0|8@1+", f'(1,0) [0|255] "{written}" B')
+    file.write_text(HEAD + message(1, text, number=1, name="A"), "utf-8")
+    node = signals(file, receives="A.Value")
+    found = node._receives[0]
+    assert found.factor == pytest.approx(factor)
+    assert found.offset == pytest.approx(offset)
+    assert node.get("notes") == ""

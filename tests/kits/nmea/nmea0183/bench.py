@@ -26,6 +26,7 @@ VALID = {
     "depth": 12.34,
     "water_temperature": 295.65,
     "rudder": -7.5 * DEG,
+    "engine_speed": [1e30, 100.0, 1e30, 1e30],
     "leg": 2,
     "leg_from": [0.0, -150.0, 0.0],
     "leg_to": [1000.0, -150.0, 0.0],
@@ -70,6 +71,15 @@ ALL = "; ".join(
         "GPGSV",
         "AGXTE",
         "AGRMB",
+        "AGAPB",
+        "AGBWC",
+        "AGBOD",
+        "HCHDM",
+        "WIMWD",
+        "GNGNS",
+        "VWVLW",
+        "ERRPM",
+        "IIVDR",
     )
 )
 

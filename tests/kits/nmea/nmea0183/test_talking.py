@@ -96,6 +96,52 @@ def test_satellites_and_the_leg_that_is_followed():
     assert float(rmb.dest_true_bearing) == pytest.approx(360.0 - 6.34, abs=0.01)
 
 
+def test_sentences_for_plotters_and_autopilots():
+    """The leg runs north, 100 m to port of the boat; she goes north at 1 m/s, 0.5 m/s west."""
+    bench = Bench(**HOME, variation=-23.0 * DEG, date="2018-09-01")
+    bench.set(**VALID)
+    bench.run(1000.0)
+    sent = read(bench.run(1.05))
+    apb, bwc, bod = sent["AGAPB"], sent["AGBWC"], sent["AGBOD"]
+    assert (apb.status_gen, apb.status_cycle_lock) == ("A", "A")
+    assert (float(apb.cross_track_err_mag), apb.dir_steer, apb.cross_track_unit) == (
+        0.054,
+        "L",
+        "N",
+    )
+    assert (apb.arr_circle_entered, apb.perp_passed) == ("V", "V")
+    assert (float(apb.bearing_to_dest), apb.bearing_type) == (0.0, "T")
+    bearing = 360.0 - math.degrees(math.atan2(100.0, 900.0))
+    assert float(apb.bearing_pres_dest) == pytest.approx(bearing, abs=0.006)
+    assert float(apb.heading_to_dest) == pytest.approx(bearing, abs=0.006)
+    assert (apb.heading_to_dest_type, apb.dest_waypoint_id) == ("T", "WP2")
+    assert float(bwc.true_track) == pytest.approx(bearing, abs=0.006)
+    assert float(bwc.mag_track) == pytest.approx((bearing + 23.0) % 360.0, abs=0.01)
+    assert float(bwc.range_next) * 1852.0 == pytest.approx(math.hypot(900.0, 100.0), abs=1.0)
+    latitude, _, _ = pymap3d.ned2geodetic(1000.0, -150.0, 0.0, -22.862, -43.223, 2.0)
+    assert -(22 + float(bwc.lat_next[2:]) / 60.0) == pytest.approx(latitude, abs=2e-7)
+    assert (float(bod.bearing_t), float(bod.bearing_mag)) == (0.0, 23.0)
+    assert (bod.dest, bod.start) == ("WP2", "WP1")
+    assert float(sent["HCHDM"].heading) == 13.0
+    mwd = sent["WIMWD"]  # it blows to (-4, -3): from 36.87 degrees
+    assert float(mwd.direction_true) == pytest.approx(36.87, abs=0.01)
+    assert float(mwd.direction_magnetic) == pytest.approx(59.87, abs=0.01)
+    assert float(mwd.wind_speed_meters) == 5.0
+    gns = sent["GNGNS"]
+    assert gns.latitude == pytest.approx(sent["GPGGA"].latitude)
+    assert (gns.mode_indicator, gns.num_sats) == ("A", sent["GPGGA"].num_sats)
+    # 1.25 m/s through the water for 1001 s.
+    assert float(sent["VWVLW"].trip_distance) * 1852.0 == pytest.approx(1251.0, abs=3.0)
+    rpm = sent["ERRPM"]
+    assert (rpm.source, rpm.engine_no, rpm.status) == ("E", 2, "A")
+    assert float(rpm.speed) == pytest.approx(100.0 * 60.0 / math.tau, abs=0.06)
+    # Over ground less 1.25 m/s on 350 degrees.
+    north, east = 1.0 - 1.25 * math.cos(350 * DEG), -0.5 - 1.25 * math.sin(350 * DEG)
+    vdr = sent["IIVDR"]
+    assert float(vdr.deg_t) == pytest.approx(math.degrees(math.atan2(east, north)) % 360, abs=0.01)
+    assert float(vdr.current) * KNOT == pytest.approx(math.hypot(north, east), abs=0.003)
+
+
 def test_without_a_fix_there_are_no_satellites_and_no_leg():
     bench = Bench(**HOME)
     bench.set(**{**VALID, "position_valid": False})
@@ -123,7 +169,7 @@ def test_what_is_not_valid_is_empty_and_says_so():
     bench = Bench(**HOME)
     bench.set(**{name: value for name, value in VALID.items() if not name.endswith("_valid")})
     sent = read(bench.run(0.1))
-    assert len(sent) == len(ALL.split(";")) - 1  # no RMB without a leg
+    assert len(sent) == len(ALL.split(";")) - 2  # no RMB without a leg, no VDR
     assert (sent["GPRMC"].status, sent["GPRMC"].mode_indicator) == ("V", "N")
     assert sent["GPRMC"].is_valid is False
     assert (sent["GPGGA"].gps_qual, sent["GPVTG"].faa_mode) == (0, "N")
@@ -235,7 +281,7 @@ def test_rates_do_not_depend_on_the_step():
 @pytest.mark.parametrize(
     ("values", "expected"),
     [
-        ({"sentences": "GPRMV 1"}, "unknown sentence 'RMV'; did you mean 'RMC'"),
+        ({"sentences": "GPRMV 1"}, "unknown sentence 'RMV'; did you mean 'RPM' or 'RMC'"),
         ({"sentences": "GPMWV 1"}, "did you mean 'MWV-T' or 'MWV-R'"),
         ({"sentences": "GPRMC"}, "'GPRMC' is not TALKER+SENTENCE PERIOD"),
         ({"sentences": "gprmc 1"}, "'gprmc 1' is not TALKER+SENTENCE PERIOD"),

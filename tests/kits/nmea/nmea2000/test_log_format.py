@@ -29,16 +29,21 @@ def read(write):
     return lambda *lines: read_log(write("boat.log", "\n".join(lines) + "\n"))
 
 
-def test_a_magnetic_compass_is_corrected_or_left_out(read):
+def test_a_magnetic_compass_is_corrected_by_its_message_or_the_network(read):
     found = read(
+        line(9.0, 127250, heading(1.0, reference=MAGNETIC)),  # no variation is known yet
         line(10.0, 127250, heading(1.0, 0.02, -0.05, MAGNETIC)),
+        line(10.2, 127258, struct.pack("<BBHhH", 0xFF, 0xF4, 0xFFFF, 1000, 0xFFFF), source=0x0A),
         line(10.5, 127250, heading(1.0, reference=MAGNETIC)),
         line(11.0, 127250, heading(2.0)),
     )
     compass = found.channels["127250.heading"]
-    np.testing.assert_allclose(compass.values, [0.97, 2.0], atol=1e-9)
-    np.testing.assert_allclose(compass.time, [0.0, 1.0])
-    assert compass.rows.tolist() == [1, 3]
+    np.testing.assert_allclose(compass.values, [0.97, 1.1, 2.0], atol=1e-9)
+    np.testing.assert_allclose(compass.time, [1.0, 1.5, 2.0])
+    assert compass.rows.tolist() == [2, 4, 5]
+    magnetic = found.channels["127250.magnetic_heading"]
+    np.testing.assert_allclose(magnetic.values, [1.0, 1.02, 1.0], atol=1e-9)
+    assert found.notes == ("1 magnetic directions (127250) before the first variation",)
 
 
 def test_a_fast_packet_of_another_encoder(read):
@@ -67,13 +72,13 @@ def test_two_sources_and_what_is_not_read(read):
     found = read(
         line(1.0, 128267, struct.pack("<BIhB", 0, 1234, 500, 0xFF)),
         line(1.1, 128267, struct.pack("<BIhB", 0, 2000, 500, 0xFF), source=0x24),
-        line(1.2, 130312, bytes(8)),
+        line(1.2, 127508, bytes(8)),
         "(1.3) can0 123#00",
         "candump was here",
     )
     assert found.channels["128267.depth"].values.tolist() == [12.34]
     assert found.channels["36/128267.depth"].values.tolist() == [20.0]
-    assert found.notes == ("1 lines that are no frame are skipped", "1 PGNs are not read: 130312")
+    assert found.notes == ("1 lines that are no frame are skipped", "1 PGNs are not read: 127508")
 
 
 def test_rudder_attitude_and_motion(read):

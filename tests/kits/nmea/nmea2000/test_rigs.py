@@ -20,7 +20,7 @@ rig  = "{rig}"
 stop = "{stop} s"
 
 [record]
-signals = ["ship.*", "machine.angle", "pilot.bus_*", "can.load"]
+signals = ["ship.*", "machine.angle", "pilot.bus_heading", "pilot.bus_rudder", "can.load"]
 every   = "500 ms"
 
 [[events]]
@@ -46,7 +46,7 @@ def compared(folder, stop, at):
     )
     without = TRIAL.format(
         rig="mariner", port="reference.target", stop=stop, at=at, command="60 deg"
-    ).replace(', "pilot.bus_*", "can.load"', "")
+    ).replace(', "pilot.bus_heading", "pilot.bus_rudder", "can.load"', "")
     return run(folder, "with", with_bus), run(folder, "without", without)
 
 

@@ -15,6 +15,7 @@ EEPROM_ACCESS(byte, uint8_t)
 EEPROM_ACCESS(word, uint16_t)
 EEPROM_ACCESS(dword, uint32_t)
 EEPROM_ACCESS(float, float)
-#define eeprom_is_ready() 1
-#define eeprom_busy_wait() ((void)0)
+bool eeprom_ready();
+#define eeprom_is_ready() eeprom_ready()
+#define eeprom_busy_wait() do {} while (!eeprom_ready())
 #endif

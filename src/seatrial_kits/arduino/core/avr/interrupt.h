@@ -3,6 +3,17 @@
 #define INTERRUPT_H
 void interrupts();
 void noInterrupts();
+#include <stdint.h>
+/* The status register, of which the flag that enables interrupts is there. */
+struct SketchStatus {
+    operator uint8_t() const;
+    SketchStatus &operator=(uint8_t status);
+    SketchStatus &operator|=(uint8_t status) { return *this = (uint8_t)(*this | status); }
+    SketchStatus &operator&=(uint8_t status) { return *this = (uint8_t)(*this & status); }
+};
+extern SketchStatus sketch_status;
+#define SREG sketch_status
+#define SREG_I 7
 #define sei interrupts
 #define cli noInterrupts
 /* Where a condition left one for the compiler to find. */

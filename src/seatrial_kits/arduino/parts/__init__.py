@@ -1,0 +1,1 @@
+"""Parts that are shipped, a file each, and those of packages and of users' files."""

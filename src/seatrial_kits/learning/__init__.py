@@ -1,0 +1,1 @@
+"""Agents that learn in compiled copies of a system."""

@@ -1,0 +1,136 @@
+"""Trials measured in one program that starts anew: verdicts and figures of single runs."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator
+from dataclasses import asdict, replace
+from typing import Any
+
+import pytest
+
+from seatrial.trial.files.trial import Trial, load_trial
+from seatrial.trial.running.hooks import Hooks, StoppedError
+from seatrial.trial.running.measuring import Measured, measure_trial
+from seatrial_kits.batch import measuring
+
+from .test_batch import RIG, TRIAL
+
+pytestmark = [
+    pytest.mark.slow,  # the compiler takes seconds
+    pytest.mark.skipif(sys.platform != "linux", reason="loads libraries of Linux"),
+]
+
+CRITERIA = """
+[[criteria]]
+name = "near"
+check = "abs(cork.x - 0.5 m) < 0.2 m after 400 ms"
+[[criteria]]
+name = "slow"
+check = "cork.v < 0.2 m/s"
+ends = true
+[[criteria]]
+name = "comes by"
+check = "eventually[0 s, 1 s] cork.x > 0.35 m"
+ends = true
+[[criteria]]
+name = "at rest"
+check = "cork.x settles within 900 ms"
+expect = "fail"
+why = "a second is not enough"
+"""
+
+
+@pytest.fixture(scope="module")
+def base(tmp_path_factory: pytest.TempPathFactory) -> Trial:
+    folder = tmp_path_factory.mktemp("measuring")
+    (folder / "cork.toml").write_text(RIG, "utf-8")
+    path = folder / "trial.toml"
+    path.write_text(TRIAL + CRITERIA, "utf-8")
+    return replace(load_trial(str(path)), figures=("cork.x", "pilot.force"))
+
+
+@pytest.fixture(autouse=True)
+def programs(monkeypatch: pytest.MonkeyPatch) -> Iterator[Any]:
+    """Let the first trial have its program, and forget it in the end."""
+    monkeypatch.setattr(measuring, "_WORTH", 0)
+    yield measuring._PROGRAMS
+    for program in measuring._PROGRAMS.values():
+        if program is not None:
+            program.batch.close()
+    measuring._PROGRAMS.clear()
+    measuring._SEEN.clear()
+
+
+def singly(trial: Trial, monkeypatch: pytest.MonkeyPatch) -> Measured:
+    with monkeypatch.context() as patch:
+        patch.setattr(measuring, "_WORTH", 10**9)
+        return measure_trial(trial, engine="native")
+
+
+def same(a: Measured, b: Measured) -> bool:
+    return {**asdict(a), "wall": 0.0} == {**asdict(b), "wall": 0.0}
+
+
+def test_verdicts_and_figures_are_those_of_single_runs(
+    base: Trial, monkeypatch: pytest.MonkeyPatch, programs: Any
+) -> None:
+    cases = [
+        {"cork.mass": 3.0, "seed": 4},
+        {"cork.mass": 500.0, "seed": 4},
+        {"cork.mass": "1 kg", "seed": 4},
+        {"cork.mass": 2.0, "seed": 11, "cork.drag": "0 N.s/m"},
+        {"cork.mass": 2.0, "seed": 11, "cork.drag": 4},
+        {"cork.mass": 5.0, "cork.form": "square"},
+        {"cork.mass": 5.0, "cork.form": "linear"},
+        {"cork.mass": 0.2, "cork.current_speed": 1.0},
+    ]
+    statuses = set()
+    for case in cases:
+        trial = base.changed(case, "test")
+        expected = singly(trial, monkeypatch)
+        found = measuring.measured(trial, Hooks())
+        assert found is not None
+        assert same(found, expected), case
+        statuses.add(found.status)
+    assert statuses == {"complete", "ended"}
+    assert len(programs) == 4  # by the names of numbers, and by texts
+    again = measuring.measured(base.changed(cases[0], "test"), Hooks())
+    assert again is not None
+    assert same(again, singly(base.changed(cases[0], "test"), monkeypatch))
+
+
+def test_each_case_has_its_own_sea(monkeypatch: pytest.MonkeyPatch, programs: Any) -> None:
+    trial = load_trial("hydrone-landing-waves", changes={"stop": "3 s"}, origin="test")
+    for height, seed in ((0.1, 1), ("20 cm", 1), (0.2, 5)):
+        case = trial.changed({"sea.height": height, "seed": seed}, "test")
+        found = measuring.measured(case, Hooks())
+        assert found is not None
+        assert same(found, singly(case, monkeypatch))
+    assert len(programs) == 1
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"cork.mass": 0.0},  # a mistake
+        {"cork.mas": 1.0},
+        {"pilot.reach": 0.01},  # fails in the run
+    ],
+)
+def test_what_goes_wrong_is_left_to_a_single_run(base: Trial, changes: dict[str, Any]) -> None:
+    assert measuring.measured(base.changed(changes, "test"), Hooks()) is None
+
+
+def test_a_bias_is_left_to_a_single_run(base: Trial) -> None:
+    fault = {"what": "bias", "where": "cork.x", "value": 0.1, "at": "100 ms"}
+    assert measuring.measured(base.failing([fault], "test"), Hooks()) is None
+
+
+def test_a_stop_ends_it(base: Trial) -> None:
+    with pytest.raises(StoppedError):
+        measuring.measured(base, Hooks(stop_requested=lambda: 1))
+    orders = iter([0, 1])
+    stopped = measuring.measured(base, Hooks(stop_requested=lambda: next(orders)))
+    assert stopped is not None
+    assert stopped.status == "stopped"
