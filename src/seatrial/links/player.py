@@ -39,8 +39,8 @@ class Player(Component):
     counts that. Entries that come late are put in their place (``reordered``). ``skipped`` counts
     those that cannot be played. A log without times is played with ``interval`` between entries.
 
-    Subclasses give `recording` and `put`. Raises InputError at the start for a file that cannot be read,
-    without an entry, without times if ``interval`` is 0, and for a window without an entry.
+    Subclasses give `recording` and `put`. Raises InputError at the start for a file that cannot be
+    read, without an entry, without times if ``interval`` is 0, and for a window without an entry.
     """
 
     discrete = True

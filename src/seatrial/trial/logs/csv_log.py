@@ -127,8 +127,8 @@ def _seconds(table: _Table, line: int, cell: str) -> float:
     if type(moment) is not type(first):
         form = "date and time" if isinstance(first, datetime) else "time of day"
         raise InputError(
-            f"{table.path}, line {line}, column {table.names[table.time_place]!r}: a {form} by ISO 8601 "
-            f"is needed, as in the first row, found {cell!r}"
+            f"{table.path}, line {line}, column {table.names[table.time_place]!r}: a {form} by "
+            f"ISO 8601 is needed, as in the first row, found {cell!r}"
         )
     if isinstance(first, datetime):
         return (moment - first).total_seconds()  # type: ignore[operator]
