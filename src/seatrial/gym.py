@@ -6,17 +6,18 @@ Those that are shipped are registered as ``seatrial/NAME-v0``, too.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from .plugins import service
 from .shipped import available
 
-if TYPE_CHECKING:
-    from seatrial_kits.learning.single import make
-    from seatrial_kits.learning.stable_baselines import stable_baselines
-    from seatrial_kits.learning.vector import make_vec
+__all__ = ["make", "make_vec", "stable_baselines", "tasks", "write_policy"]
 
-__all__ = ["make", "make_vec", "stable_baselines", "tasks"]
+
+make: Any
+make_vec: Any
+stable_baselines: Any
+write_policy: Any
 
 
 def __getattr__(name: str) -> Any:

@@ -377,7 +377,7 @@ class MovedFinder:
         self, fullname: str, path: Sequence[str] | None, target: ModuleType | None = None
     ) -> ModuleSpec | None:
         """Return how a moved module is loaded; None for all others."""
-        new = _moved(fullname)
+        new = moved_to(fullname)
         return None if new is None else ModuleSpec(fullname, cast(Any, self), origin=new)
 
     def create_module(self, spec: ModuleSpec) -> ModuleType:
@@ -397,7 +397,8 @@ class MovedFinder:
         module.__spec__ = self._spec
 
 
-def _moved(name: str) -> str | None:
+def moved_to(name: str) -> str | None:
+    """Return where a module is that had another name; None of any other name."""
     if not name.startswith(_PREFIX):
         return None
     old, rest = name.removeprefix(_PREFIX), ""

@@ -329,3 +329,31 @@ def test_bad_data_files_are_named(value: str, message: str, write, tmp_path: Pat
     file = write("boat.py", f"DATA_FILES = {value}\n" + PLAIN.replace("NUMBER", "1.0"))
     with pytest.raises(InputError, match=message):
         bundle("boat_Boat", b"import boat\n", file.parent)
+
+
+@pytest.mark.parametrize(
+    "imports",
+    [
+        "from seatrial.component import Component, Output",
+        "import seatrial.component\nfrom seatrial.model.ports import Output\n"
+        "Component = seatrial.component.Component",
+        "from seatrial import component\nComponent, Output = component.Component, component.Output",
+    ],
+)
+@pytest.mark.filterwarnings("ignore::DeprecationWarning")
+def test_modules_travel_by_the_paths_that_they_had(imports: str, write, tmp_path: Path) -> None:
+    text = f'''{imports}
+from seatrial.links.can.frame import Frame
+
+
+class Boat(Component):
+    value = Output("1", "bytes of a frame")
+
+    def outputs(self, t):
+        self.value = float(len(Frame(1, b"abc").data))
+'''
+    path = build_fmu(source(write("boat.py", text), "Boat"), tmp_path / "boat.fmu")
+    raw = Raw(path, tmp_path / "unpacked")
+    slave = raw.start()
+    assert raw.get("value") == 3.0
+    slave.freeInstance()

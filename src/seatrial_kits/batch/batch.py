@@ -227,6 +227,16 @@ class Batch:
             self._batch, _at(chosen), _at(references), len(references), None
         )
 
+    def settings(self, copy: int) -> dict[str, Any]:
+        """Return what a copy has started with beside the rig's or trial's own: its settings.
+
+        ``run_trial(trial, set=batch.settings(3))`` runs it alone, into a folder with its record;
+        ``Simulation`` takes the seed apart. Raises InputError for a number that no copy has.
+        """
+        if not 0 <= copy < self.count:
+            raise InputError(f"settings: copy is {copy}, allowed 0 to {self.count - 1}")
+        return {"seed": int(self.seeds[copy]), **self._settings.of(copy)}
+
     def is_built_in(self, name: str) -> bool:
         """Say if a value is part of the program, so that `reset` refuses it. Raises InputError."""
         from .settings import is_built_in

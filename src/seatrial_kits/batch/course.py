@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
 from seatrial.api.assembling import Assembled
 from seatrial.errors import InputError
@@ -11,7 +11,19 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from .batch import Batch
+
+class Acted(Protocol):
+    """Copies that are acted on, as `Batch` is."""
+
+    def set(self, name: str, value: Any, mask: Any) -> None:
+        """Set an input or a parameter of the copies of the mask."""
+
+    def override(self, name: str, value: Any, mask: Any) -> None:
+        """Replace an output of the copies of the mask."""
+
+    def release(self, name: str, mask: Any) -> None:
+        """End that."""
+
 
 _DRAWN = ("time", "jitter", "every", "grows_over")
 
@@ -54,7 +66,7 @@ class Course:
         """Return after how many steps the next act of one of these copies is, ``most`` at most."""
         return min([most, *(int(at - s) for at in self._acts for s in {*steps.tolist()} if at > s)])
 
-    def act(self, batch: Batch, steps: NDArray[np.int64], chosen: NDArray[np.bool_]) -> None:
+    def act(self, batch: Acted, steps: NDArray[np.int64], chosen: NDArray[np.bool_]) -> None:
         """Do what is due in the chosen copies, which stand at these steps."""
         for at, acts in self._acts.items():
             due = chosen & (steps == at)

@@ -173,6 +173,10 @@ class Settings:
         """Go back to what `change` returned."""
         self._rows = before
 
+    def of(self, copy: int) -> dict[str, float]:
+        """Return what was set for the starts of a copy, by scalar."""
+        return {whole: float(rows[copy]) for whole, rows in self._rows.items()}
+
     def _as_given(self, whole: str) -> float:
         """Return what the rig gives a scalar."""
         part, name = self._system.located(whole, "set")[0]

@@ -1,1 +1,1 @@
-"""Agents that learn in compiled copies of a system."""
+"""Agents that learn in compiled copies of a system, and trained networks as components."""

@@ -388,6 +388,23 @@ def test_copies_of_a_trial_have_its_events_and_faults(rig: Path) -> None:
     assert last == found[0].tolist()
 
 
+def test_a_copy_runs_alone_into_a_folder(rig: Path) -> None:
+    path = rig.with_name("trial.toml")
+    path.write_text(TRIAL, "utf-8")
+    with Batch(path, 3, seed=6, set={"cork.mass": np.array([1.0, 2.0, 4.0])}) as batch:
+        names = list(batch.signals)
+        rows = batch.record(40, *names)
+        assert rows.shape == (3, 40, len(names))
+        assert batch.settings(1) == {"seed": 7, "cork.mass": 2.0}
+        trial = run_trial(
+            path, out=rig.parent / "alone", set={**batch.settings(2), "stop": "0.4 s"}
+        )
+        with pytest.raises(InputError, match="copy is 3, allowed 0 to 2"):
+            batch.settings(3)
+    for name, column in zip(names, rows[2].T, strict=True):
+        assert [float(v) for v in trial.signals[name][1:]] == column.tolist()
+
+
 def test_a_simulation_of_a_trial_starts_anew_with_its_events(rig: Path) -> None:
     path = rig.with_name("trial.toml")
     path.write_text(TRIAL, "utf-8")

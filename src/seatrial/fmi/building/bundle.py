@@ -26,6 +26,7 @@ from pathlib import Path
 
 from ...errors import InputError
 from ...kits import OURS
+from ...moved import moved_to
 from ..components.source import ComponentSource
 
 _COOKIE = re.compile(r"^[ \t\f]*#.*?coding[:=]")
@@ -157,6 +158,11 @@ def _closure(
     while todo:
         (name, optional), importer = todo.pop()
         path = local.find(name)
+        new = None if path else moved_to(name)
+        if new and (path := local.find(new)) and name not in modules:
+            modules[name] = path, _moved(new)
+            todo += [((one, False), importer) for one in (new, name.rpartition(".")[0])]
+            continue
         if path is None:
             top = name.partition(".")[0]
             if local.find(top) is None and top not in sys.stdlib_module_names and not optional:
@@ -176,6 +182,15 @@ def _closure(
         if "." in name:
             todo.append(((name.rpartition(".")[0], False), str(path)))
     return modules, third_party
+
+
+def _moved(new: str) -> bytes:
+    """Return a module by the path that it had: the one of the path that it has."""
+    package, _, leaf = new.rpartition(".")
+    return (
+        f'"""Now {new}."""\n\nimport sys\n\nfrom {package} import {leaf}\n\n'
+        f"sys.modules[__name__] = {leaf}\n"
+    ).encode()
 
 
 def _data_files(path: Path, source: bytes) -> list[tuple[str, bytes]]:

@@ -1,4 +1,4 @@
-"""Sources of FMUs: a name of the index, an ``.fmu`` file, ``my_boat.py:Class`` or a table."""
+"""Sources of FMUs: names of the index, and files: FMUs, classes in Python, tables, policies."""
 
 from __future__ import annotations
 
@@ -19,6 +19,7 @@ from ...errors import InputError, unknown
 from ...kits import OURS
 from ...model.component import Component
 from ...plugins import service
+from ...reading import toml_content
 from .index import component_class, components, shipped_names, title
 from .table import table_component
 from .table_file import SUFFIXES, frozen_table
@@ -164,16 +165,31 @@ def _table(path: Path, text: str) -> TableSource:
     )
 
 
+def _of_data(path: Path) -> ComponentSource:
+    """Return the component of a file of data, which its keys tell apart. Raises InputError."""
+    content = toml_content(path.read_bytes(), str(path)) if path.is_file() else {}
+    if "network" in content:
+        source: ComponentSource = service("learning.policy_source")(path)
+        return source
+    if content and "log" not in content:
+        found = ", ".join(content)
+        raise InputError(
+            f"{path}: log, of a log that is played, or network, of a trained one, is needed; found "
+            f"{found}"
+        )
+    return _table(path, service("logs.played")(path))
+
+
 def find_source(text: str, relative_to: Path) -> ComponentSource | Path:
     """Return what ``text`` names: a component, or the path of an ``.fmu`` file.
 
     ``text`` is ``path/to/x.fmu``, ``path/to/my_boat.py:Class``, ``path/to/inputs.csv`` or
-    ``.parquet``, ``path/to/boat.toml``, which says what of a log is played (all relative to the
-    file that says it), or a name of the index. Raises InputError if there is nothing there.
+    ``.parquet``, ``path/to/data.toml``, which says what of a log is played or what a trained
+    network means (all relative to the file that says it), or a name of the index. Raises
+    InputError if there is nothing there.
     """
     if text.endswith(".toml"):
-        path = (relative_to / text).resolve()
-        return _table(path, service("logs.played")(path))
+        return _of_data((relative_to / text).resolve())
     if text.endswith(SUFFIXES):
         return table_source((relative_to / text).resolve())
     if text.endswith(".fmu"):
@@ -189,7 +205,7 @@ def find_source(text: str, relative_to: Path) -> ComponentSource | Path:
     if text not in components().names():
         raise InputError(
             unknown("FMU", text, components().names())
-            + "; or give a path: x.fmu, my_boat.py:Class, x.csv, x.toml of a log"
+            + "; or give a path: x.fmu, my_boat.py:Class, x.csv, x.toml of a log or a network"
         )
     return _indexed(text)
 

@@ -11,15 +11,11 @@ import casadi as ca
 from ...model.component import Input, Parameter, terminal
 from ...model.plant import Plant, State
 from ...model.ports import Output
-from ..contact import friction, hunt_crossley
+from .legs import Legs, inside
 from .symbolic import euler_rate_matrix, rotation_matrix
 
 _EULER = ("phi", "theta", "psi")
-_SIGNS = ((1, -1), (1, 1), (-1, -1), (-1, 1))
 _DOWN = ca.DM([0, 0, 1])
-_THICKNESS = 0.05
-"""What is farther below the deck than this, m, is under it, not on it."""
-
 _TILT = 0.35
 """The controller tilts the drone to this at most, rad."""
 
@@ -132,11 +128,11 @@ class LeggedDrone(Plant):
         """Return the derivatives of the drone's states, and the forces on drone and deck."""
         own, deck = rotation_matrix(x.attitude), rotation_matrix(u.deck_attitude)
         place = deck.T @ (x.position - u.deck_position)
-        legs = _Legs(x, u, p, own, deck, place)
+        legs = Legs(x, u, p, own, deck, place)
         share = ca.exp(-x.stopped)
         thrust, torque = _controller(x, u, p, deck, share)
         height = ca.fmax(p.pad[2] - p.feet[2] - place[2], 0)
-        over = _inside(place, p.deck_size)
+        over = inside(place, p.deck_size)
         wake = over * ca.exp(-((height / p.wake_length) ** 2)) * thrust
         weight = p.mass * p.gravity
         turning = ca.cross(x.rates, p.inertia * x.rates)
@@ -161,33 +157,6 @@ class LeggedDrone(Plant):
         }
 
 
-class _Legs:
-    """Forces of the feet: ``force`` in the deck's axes, ``moment`` on the drone in its own,
-    ``on_deck`` the moment of the former about the craft's origin, N.m."""
-
-    def __init__(self, x: Any, u: Any, p: Any, own: Any, deck: Any, place: Any) -> None:
-        self.force = self.moment = self.on_deck = ca.DM.zeros(3)
-        self.slip = ca.DM.zeros(3)
-        self.normals = []
-        velocity = deck.T @ x.velocity - u.deck_velocity
-        for ahead, aside in _SIGNS:
-            arm = ca.vertcat(ahead * p.feet[0], aside * p.feet[1], p.feet[2])
-            foot = place + deck.T @ own @ arm
-            turned = deck.T @ own @ ca.cross(x.rates, arm)
-            v = velocity + turned - ca.cross(u.deck_rates, foot)
-            depth = foot[2] - p.pad[2]
-            normal = hunt_crossley(depth, v[2], p.stiffness, p.damping)
-            normal *= _inside(foot, p.deck_size) * (depth < _THICKNESS)
-            drag = friction(normal, (v[0], v[1]), p.friction, p.slip_speed)
-            force = ca.vertcat(*drag, -normal)
-            self.normals.append(normal)
-            self.force += force
-            self.moment += ca.cross(arm, own.T @ deck @ force)
-            self.on_deck += ca.cross(foot, force)
-            self.slip += v / 4
-        self.total = sum(self.normals)
-
-
 def _controller(x: Any, u: Any, p: Any, deck: Any, share: Any) -> tuple[Any, Any]:
     """Return thrust, N, and moment, N.m in the drone's axes."""
     pad = u.deck_position + deck @ p.pad
@@ -208,8 +177,3 @@ def _controller(x: Any, u: Any, p: Any, deck: Any, share: Any) -> tuple[Any, Any
 
 def _limited(angle: Any) -> Any:
     return ca.fmin(ca.fmax(angle, -_TILT), _TILT)
-
-
-def _inside(place: Any, size: Any) -> Any:
-    """Return 1 for a place above the deck, else 0."""
-    return (ca.fabs(place[0]) <= size[0] / 2) * (ca.fabs(place[1]) <= size[1] / 2)

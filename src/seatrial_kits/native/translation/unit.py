@@ -10,7 +10,7 @@ from typing import Any
 from seatrial.kits import is_ours
 from seatrial.model.component import Component as Base
 
-from . import loops  # noqa: F401  which registers its statements
+from . import dense, loops  # noqa: F401  which register what they translate
 from .calls import call
 from .classes import FRAMEWORK, ROOTS, refuse_unusual
 from .constants import is_record, scope_of, why_no_constant

@@ -1,0 +1,1 @@
+"""Landing of a multirotor on a moving deck: tracking, prediction, control."""

@@ -1,0 +1,174 @@
+"""What a drone knows of a landing pad from its camera and the craft's reports."""
+
+from __future__ import annotations
+
+import math
+from typing import Any, ClassVar
+
+import numpy as np
+
+from ...model.component import Component, Input, Parameter, terminal
+from ...model.waypoints import NED
+from ...physics.sea.numbers import Array
+from . import tracking
+from .prediction import PER_PERIOD, WINDOW
+
+_EULER = ("phi", "theta", "psi")
+_SIGHT = 0.02
+"""Noise of a sight, m, 1 sigma."""
+_SPEED = 0.02
+"""Noise of a reported velocity, m/s."""
+_JERK = 1.0
+"""Spectral density of the pad's jerk, m2/s5."""
+_KEPT = 0.6
+"""How long the drone's own positions are kept, s."""
+_FARTHEST = 0.5
+"""No extrapolation goes farther than this, s."""
+
+
+class DeckEstimate(Component):
+    """Mix-in: the pad's motion by a Kalman filter, and samples of heave and slopes.
+
+    A sight gives the pad from where the drone was at the exposure, a report its velocity, both at
+    the time that they are of; nothing newer is used. From there to now and beyond the pad
+    moves with the jerk of an oscillation, -(1.15 omega_p)^2 v, for at most 0.5 s; omega_p is
+    that of ``wave_period``, the peak period as the craft reports it.
+    """
+
+    position = Input("m", "CG of the drone in north-east-down", axes="xyz", frame="n")
+    velocity = Input("m/s", "velocity of the CG over ground, body axes", axes="uvw")
+    attitude = Input("rad", "Euler angles of the drone, ZYX", axes=_EULER)
+    rates = Input("rad/s", "angular velocity of the drone, body axes", axes="pqr")
+    offset = Input("m", "pad from the CG of the drone, {n}", axes=NED)
+    exposed = Input("s", "time of the exposure of the last sight")
+    sight_valid = Input("1", "whether the last sight due came", type=bool)
+    sight_count = Input("1", "number of sights so far", type=int)
+    deck_attitude = Input("rad", "Euler angles of the craft, reported", axes=_EULER, optional=True)
+    deck_rates = Input("rad/s", "its angular velocity, reported", axes="pqr", optional=True)
+    pad_velocity = Input("m/s", "velocity of the pad, reported, {n}", axes=NED, optional=True)
+    reported = Input("s", "time of the last report", optional=True)
+    report_valid = Input("1", "whether the last report due came", type=bool, optional=True)
+    report_count = Input("1", "number of reports so far", type=int, optional=True)
+    wave_period = Input("s", "peak period of the sea", start=2.0, optional=True)
+
+    reading_period = Parameter(0.05, "s", "how often sights and reports are read", min=1e-6)
+
+    terminals: ClassVar = {
+        "motion": terminal("position", "velocity", "attitude", "rates"),
+        "sight": terminal("offset", "exposed", "sight_valid", "sight_count"),
+        "report": terminal(
+            *("deck_attitude", "deck_rates", "pad_velocity", "reported"),
+            *("report_valid", "report_count"),
+        ),
+    }
+    exercised: ClassVar = {"sight_valid": True, "sight_count": 1, "offset": [0.1, 0.0, 2.0]}
+
+    def reset_estimate(self, t: float) -> None:
+        """Know nothing of the deck."""
+        self._x = self._P = np.zeros((0, 3))
+        self._at = t
+        self._seen, self._sights, self._reports = -math.inf, 0, 0
+        self._own: list[list[float]] = []
+        self._read = t
+        self._slopes: list[float] = [0.0] * 6
+        self._slopes_at = -math.inf
+        self._samples: list[list[float]] = []
+        self._grid = 0
+        self._hold: list[float] = []
+
+    def observe(self, t: float) -> None:
+        """Keep the drone's own place, and take in what is new."""
+        self._own.append([t, *self.position])
+        while self._own[0][0] < t - _KEPT:
+            self._own.pop(0)
+        if t < self._read - 1e-9:
+            return
+        self._read += self.reading_period
+        news: list[tuple[float, int, Any]] = []
+        if self.sight_valid and self.sight_count != self._sights:
+            self._sights = self.sight_count
+            news.append((self.exposed, 0, np.add(self.offset, self._was(self.exposed))))
+            self._seen = max(self._seen, self.exposed)
+        if self.report_valid and self.report_count != self._reports:
+            self._reports = self.report_count
+            news.append((self.reported, 1, np.array(self.pad_velocity)))
+            self._slopes, self._slopes_at = [*self.deck_attitude, *self.deck_rates], self.reported
+        for at, row, value in sorted(news, key=lambda each: each[:2]):
+            self._take(at, row, value)
+
+    def lost_for(self, t: float) -> float:
+        """Return how long the mark has not been seen, s; infinite before it was."""
+        return t - self._seen
+
+    def deck_at(self, t: float) -> Array:
+        """Return position, velocity, and acceleration of the pad at ``t``, (3, 3)."""
+        if not len(self._x):
+            below = [self.position[0], self.position[1], self.position[2] + 1e3]
+            return np.array([below, [0.0] * 3, [0.0] * 3])
+        omega = 1.15 * 2.0 * math.pi / max(self.wave_period, 0.1)
+        return tracking.ahead(self._x, min(max(t - self._at, 0.0), _FARTHEST), omega)
+
+    def deck_heading(self) -> float:
+        """Return the craft's heading as last reported, rad."""
+        return self._slopes[2]
+
+    def mean_down(self) -> float | None:
+        """Return the pad's mean place down, m, None before there is one."""
+        if not len(self._x):
+            return None
+        if len(self._samples) < PER_PERIOD:
+            return float(self._x[0][2])
+        return -float(np.mean([row[0] for row in self._samples]))
+
+    # ------------------------------------------------------------------ inside
+
+    def _was(self, at: float) -> list[float]:
+        """Return where the drone was, linear between two instants."""
+        later = next((i for i, row in enumerate(self._own) if row[0] >= at), len(self._own) - 1)
+        b, a = self._own[later], self._own[max(later - 1, 0)]
+        share = (at - a[0]) / (b[0] - a[0]) if b[0] > a[0] else 1.0
+        return [p + share * (q - p) for p, q in zip(a[1:], b[1:], strict=True)]
+
+    def _take(self, at: float, row: int, value: Array) -> None:
+        if not len(self._x):
+            if row == 0:
+                self._x, self._P = tracking.first(value)
+                self._at = at
+            return
+        if at < self._at - 1e-6:
+            return
+        self._x, self._P = tracking.moved_on(self._x, self._P, max(at - self._at, 0.0), _JERK)
+        self._at = max(at, self._at)
+        noise = _SPEED if row else _SIGHT
+        self._x, self._P = tracking.corrected(self._x, self._P, row, value, noise)
+        self._sample()
+
+    def _sample(self) -> None:
+        """Keep heave and slopes at multiples of a share of the peak period."""
+        step = self.sample_step()
+        if not self._samples:
+            self._grid = math.ceil(self._at / step)
+        while self._grid * step <= self._at + 1e-9:
+            back = self._grid * step - self._at
+            down = self._x[0][2] + self._x[1][2] * back + self._x[2][2] * back * back / 2.0
+            north, east = self._tilt_at(self._grid * step)
+            self._samples.append([-float(down), north, east])
+            self._grid += 1
+        del self._samples[:-WINDOW]
+
+    def sample_step(self) -> float:
+        """Return the time between two samples, s."""
+        return max(self.wave_period, 0.1) / PER_PERIOD
+
+    def _tilt_at(self, t: float) -> tuple[float, float]:
+        """Return the slopes to north and east at ``t``, by the last report and its rates."""
+        phi, theta, psi, p, q, r = self._slopes
+        back = min(max(t - self._slopes_at, -_FARTHEST), _FARTHEST)
+        s, c = math.sin(phi), math.cos(phi)
+        phi += (p + math.tan(theta) * (s * q + c * r)) * back
+        theta += (c * q - s * r) * back
+        ahead, aside = math.tan(theta), -math.tan(phi)
+        return (
+            math.cos(psi) * ahead - math.sin(psi) * aside,
+            math.sin(psi) * ahead + math.cos(psi) * aside,
+        )
