@@ -39,8 +39,8 @@ class Player(Component):
     counts that. Entries that come late are put in their place (``reordered``). ``skipped`` counts
     those that cannot be played. A log without times is played with ``interval`` between entries.
 
-    Subclasses give `read` and `put`. Raises InputError at the start for a file that cannot be read,
-    without an entry, without times if ``interval`` is 0, and for a window without an entry.
+    Subclasses give `recording` and `put`. Raises InputError at the start for a file that cannot be
+    read, without an entry, without times if ``interval`` is 0, and for a window without an entry.
     """
 
     discrete = True
@@ -64,7 +64,7 @@ class Player(Component):
     reordered = Output("1", "entries that came late in the file", type=int)
     clock_set = Output("1", "times that the recorder's clock was set", type=int)
 
-    def read(self, path: Path) -> Recording:
+    def recording(self, path: Path) -> Recording:
         """Return the recording in a file. Raises InputError."""
         raise NotImplementedError
 
@@ -117,7 +117,7 @@ class Player(Component):
         if not self.file:
             return
         try:
-            found = self.read(Path(self.file))
+            found = self.recording(Path(self.file))
         except OSError as error:
             raise InputError(f"{self.name}: {self.file}: {error.strerror}") from None
         except InputError as error:

@@ -64,7 +64,7 @@ class CanPlayer(Player):
         """Publish the requests."""
         CanNode(self._can).flush()
 
-    def read(self, path: Path) -> Recording:
+    def recording(self, path: Path) -> Recording:
         """Return the frames of a file. Raises InputError for a bus that it does not have."""
         skipped: Counter[str] = Counter()
         identifiers, sources = _left_out(self.leave_out)
@@ -86,7 +86,7 @@ class CanPlayer(Player):
 
 def _left_out(text: str) -> tuple[set[int], set[int]]:
     """Return identifiers and sources. Raises InputError for a word that is neither."""
-    identifiers, sources = set(), set()
+    identifiers, sources = set[int](), set[int]()
     for word in text.split():
         of_source = word.startswith("source:")
         try:

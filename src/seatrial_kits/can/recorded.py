@@ -49,7 +49,7 @@ class _Parsed(NamedTuple):
     data: bytes
     extended: bool = True
     remote: int | None = None
-    """Bytes that a remote frame asks for."""
+    """Bytes that a remote frame requests."""
     fd: int | None = None
     """Flags of a frame of CAN FD: 1 bit rate switch, 2 error state."""
     is_message: bool = False

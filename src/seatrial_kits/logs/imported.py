@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from seatrial import __version__
 from seatrial.errors import InputError, unmatched
@@ -192,7 +193,7 @@ def _axis(
     return time
 
 
-def _unknown_note(unknown: Mapping[str, Array]) -> str:
+def _unknown_note(unknown: Mapping[str, NDArray[np.bool_]]) -> str:
     shares = sorted(unknown, key=lambda name: float(np.mean(unknown[name])))
     worst = ", ".join(
         f"{name} in {100.0 * (1.0 - float(np.mean(unknown[name]))):.3g} % of the rows"

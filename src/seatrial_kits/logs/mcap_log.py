@@ -24,9 +24,9 @@ _NS = 10**9
 def _read(path: Path, _: Column | None) -> Log:
     """Return the log in an MCAP file: numbers of its JSON messages, ``TOPIC.FIELD``.
 
-    Units are those of ``unit`` in the JSON schema. Times are those of the messages, from the first
-    one on where they are dates. Messages in other encodings are left out with a note, and so is
-    what is behind the place at which a file is cut.
+    A field serves the quantity of its name. Units are those of ``unit`` in the JSON schema. Times
+    are those of the messages, from the first one on where they are dates. Messages in other
+    encodings are left out with a note, and so are those behind the place where a file is cut.
 
     Raises InputError for a file without such a message.
     """
@@ -55,7 +55,10 @@ def _read(path: Path, _: Column | None) -> Log:
     if not channels:
         raise InputError(f"{path}: no message in JSON with a number; {'; '.join(notes)}")
     craft = of_craft(channels)
-    served = {what: [what, *craft.get(what, ())] for what in QUANTITIES}
+    served = {
+        what: [what, *craft.get(what, ()), *(n for n in channels if n.endswith(f".{what}"))]
+        for what in QUANTITIES
+    }
     return Log(path, channels, served, date_of((begun or 0) / _NS), notes)
 
 

@@ -95,7 +95,10 @@ def played(path: Path) -> str:
 
 
 @lru_cache(maxsize=16)
-def _played(path: Path, _: tuple[int, int], log_path: Path, __: tuple[int, int]) -> str:
+def _played(
+    path: Path, stamped: tuple[int, int], log_path: Path, log_stamped: tuple[int, int]
+) -> str:
+    """Return the table of a file and a log, as they are at the times of their stamps."""
     content, source = read_toml(path)
     file = validated(PlayFile, content, source.where)
     named, _, unit = (file.time or "").partition(":")

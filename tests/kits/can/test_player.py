@@ -103,7 +103,7 @@ def test_what_python_can_writes(tmp_path_factory, suffix, frames):
             times.append(time)
             writer.on_message_received(message(frame, time, "can0"))
     found = list(recorded_frames(path, Counter()))
-    # python-can's text leaves out how much a remote frame asks for.
+    # python-can's text leaves out how much a remote frame requests.
     assert [each.frame for each in found] == [
         Frame(frame.identifier, remote=True) if frame.remote and suffix == ".log" else frame
         for frame, _ in frames

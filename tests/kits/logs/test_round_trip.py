@@ -128,7 +128,7 @@ def test_a_bus_through_its_own_log(folders, steps, data):
 @given(steps=STEPS, seed=st.integers(0, 1000))
 def test_sentences_through_their_text(folders, steps, seed):
     folder, times = folders(), np.cumsum(steps) / 100.0
-    numbers = random.Random(seed)  # noqa: S311
+    numbers = random.Random(seed)
     headings = [f"{numbers.random() * 359.0:.1f}" for _ in times]
     lines = [str(pynmea2.HDT("HE", "HDT", (each, "T"))) for each in headings]
     text = "".join(

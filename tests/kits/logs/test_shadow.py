@@ -180,3 +180,12 @@ def test_what_feeds_an_input_in_the_rig_is_left_out(write, tmp_path):
     assert run.signals["starboard_propeller.speed"][-1] == pytest.approx(103.93086427398)
     assert ["log.share", "port_propeller.command"] in run.manifest["connections"]
     assert ["port_esc.share", "port_propeller.command"] not in run.manifest["connections"]
+
+
+@pytest.mark.slow
+def test_the_same_log_leaves_the_same_files(boat):
+    for out in ("once", "again"):
+        assert shadow(boat, out, "--to", "105 s").returncode == 0
+    for name in ("signals.csv", "manifest.json", "shadow.json"):
+        once, again = ((boat / out / name).read_bytes() for out in ("once", "again"))
+        assert once == again, name

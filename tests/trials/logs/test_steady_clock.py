@@ -70,3 +70,12 @@ def test_times_since_1970_are_from_the_first():
     assert found.channels["x"].time.tolist() == [0.0, 0.5]
     assert found.start.isoformat() == "2023-11-14T22:13:20+00:00"
     assert from_zero(log([5.0, 6.0])).channels["x"].time.tolist() == [5.0, 6.0]
+
+
+def test_topics_that_come_one_after_the_other():
+    """As in a ULog that pyulog has read: rows are counted topic by topic."""
+    one = channel("one", "m", np.arange(100.0), np.arange(100.0), np.arange(1, 101))
+    two = channel("two", "m", np.arange(100.0), np.arange(100.0), np.arange(101, 201))
+    found = steady(Log(Path("boat.ulg"), {"one": one, "two": two}))
+    assert found.notes == ()
+    assert found.channels["two"].time.tolist() == two.time.tolist()

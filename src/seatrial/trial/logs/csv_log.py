@@ -39,7 +39,7 @@ class _Table:
     names: list[str]
     units: list[str | None]
     decimal_comma: bool
-    time: int
+    time_place: int
     """Place of the column of the time."""
     lines: list[Integers] = field(default_factory=list)
     values: list[list[Array]] = field(default_factory=list)
@@ -55,10 +55,10 @@ class _Table:
         if not self.values:
             self.values = [[] for _ in self.names]
             self.wrong = [{} for _ in self.names]
-            self.first = _clock_time(rows[0][self.time])
+            self.first = _clock_time(rows[0][self.time_place])
         self.lines.append(np.array(lines, np.int64))
         for place, cells in enumerate(zip(*rows, strict=True)):
-            if place == self.time and self.first is not None:
+            if place == self.time_place and self.first is not None:
                 moments = [_seconds(self, *each) for each in zip(lines, cells, strict=True)]
                 self.values[place].append(np.array(moments))
                 continue
@@ -127,11 +127,11 @@ def _seconds(table: _Table, line: int, cell: str) -> float:
     if type(moment) is not type(first):
         form = "date and time" if isinstance(first, datetime) else "time of day"
         raise InputError(
-            f"{table.path}, line {line}, column {table.names[table.time]!r}: a {form} by ISO 8601 "
-            f"is needed, as in the first row, found {cell!r}"
+            f"{table.path}, line {line}, column {table.names[table.time_place]!r}: a {form} by "
+            f"ISO 8601 is needed, as in the first row, found {cell!r}"
         )
     if isinstance(first, datetime):
-        return (moment - first).total_seconds()  # type: ignore[operator, union-attr]
+        return (moment - first).total_seconds()  # type: ignore[operator]
     return of_day(moment)  # type: ignore[arg-type]
 
 

@@ -1,4 +1,4 @@
-"""Which signals of a run a log has, too."""
+"""Signals of a run that a log has, too."""
 
 from __future__ import annotations
 

@@ -39,13 +39,14 @@ class Trace:
     def at(self, times: Array) -> tuple[Array, NDArray[np.bool_]]:
         """Return values at rising ``times``, and whether each is known.
 
-        Linear between two entries, or the last one's where it is held. Before the first entry,
-        after the last and in a gap the nearest earlier one stands, and is not known.
+        Linear between two entries, or the last one's where it is held. Before the first entry, in
+        a gap and, but for what is held, after the last the nearest earlier one stands, and is not
+        known.
         """
         before = np.clip(np.searchsorted(self.time, times, side="right") - 1, 0, None)
         after = np.minimum(before + 1, len(self.time) - 1)
         found = self.values[before].copy()
-        inside = (times >= self.time[0]) & (times <= self.time[-1])
+        inside = (times >= self.time[0]) & (self.held | (times <= self.time[-1]))
         apart = self.time[after] - self.time[before]
         known = inside & ((apart <= self.gap) | (times == self.time[before]))
         if not self.held:

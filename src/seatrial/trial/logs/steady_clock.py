@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
@@ -25,7 +26,9 @@ def steady(log: Log) -> Log:
     rows, times = _entries(log)
     if not len(rows):
         return log
-    at, shifts = clock_jumps(times)
+    # Of a log in which topics come one after the other, time goes back between them alone.
+    is_set = any(len(clock_jumps(each)[0]) for each in _finite_times(log))
+    at, shifts = clock_jumps(times) if is_set else (rows[:0], times[:0])
     notes = list(log.notes)
     if len(at):
         first = f"the first before {log.row} {rows[at[0]]}, by {-shifts[0]:+.6g} s"
@@ -47,6 +50,12 @@ def steady(log: Log) -> Log:
     if doubled:
         notes.append(f"{doubled} entries with the time of the next of their channel are left out")
     return replace(log, channels=channels, notes=tuple(notes))
+
+
+def _finite_times(log: Log) -> Iterator[Array]:
+    """Yield the times of each channel; of a table, whose channels have the same, once."""
+    for each in list(log.channels.values())[: 1 if log.table else None]:
+        yield each.time[np.isfinite(each.time)]
 
 
 def _times(count: int) -> str:

@@ -106,8 +106,9 @@ def traces_of(log: Log, asked: Asked, *, has_pilot: bool) -> Traces:
     motion = {}
     of_log = {**defaults(log), **asked.columns}
     for what in MOTION:
-        if what in of_log and (each := served(log, what, of_log[what])) is not None:
-            motion[what] = _added(outputs, what, each)
+        found = served(log, what, of_log[what]) if what in of_log else None
+        if found is not None:
+            motion[what] = _added(outputs, what, found)
     if not {"north", "east"} <= motion.keys() and {"latitude", "longitude"} <= motion.keys():
         for what in ("north", "east"):
             motion[what] = _added(outputs, what, found_in(log, Column(what)))

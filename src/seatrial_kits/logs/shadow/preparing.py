@@ -26,7 +26,7 @@ from .starting import crafts, first_state, settings
 from .table import window_of, write_table
 
 COMPONENT = "log"
-TABLE = "log.csv"
+TABLE, _RIG = "log.csv", "system.toml"
 _ORDERS = {YAW: "pilot.orders.manual.yaw", SPEED: "pilot.orders.manual.surge"}
 _VEHICLE = """\
 title = "{vehicle} alone"
@@ -128,7 +128,7 @@ def _trial(
     else:
         rig = str(Path(name).resolve()) if name.endswith(".toml") else name
     chosen = {k.partition(".")[2]: v for k, v in changes.items() if k.startswith("choices.")}
-    step = load_rig(rig, choices=chosen).step_ns
+    step = load_rig(rig, folder, chosen).step_ns
     usual = [each.usual for each in traces.outputs.values() if each.usual > 0.0]
     every = max(round(min(usual, default=1.0) * NS / step), 1) * step
     path = folder / f"{log.path.stem}-shadow.toml"
@@ -143,7 +143,7 @@ def _trial(
 
 
 def _vehicle_rig(vehicle: str, has_pilot: bool, folder: Path) -> str:
-    """Write a rig of a vehicle, and its pilot in the mode manual; return its path."""
+    """Write a rig of a vehicle, and its pilot in the mode manual; return its name there."""
     text = _VEHICLE.format(
         vehicle=vehicle,
         step=json.dumps(load_rig(f"vehicles/{vehicle}").file.step),
@@ -153,9 +153,8 @@ def _vehicle_rig(vehicle: str, has_pilot: bool, folder: Path) -> str:
         text += _PILOT.format(
             pilot=json.dumps(f"pilots/{vehicle}"), mode="guidance.mode", armed="guidance.armed"
         )
-    path = folder / "system.toml"
-    path.write_text(text, encoding="utf-8")
-    return str(path)
+    (folder / _RIG).write_text(text, encoding="utf-8")
+    return _RIG
 
 
 def _length(window: Window, step_ns: int) -> int:

@@ -70,7 +70,7 @@ def _fit(each: Trace, first: float, length: float) -> tuple[float, float]:
     elapsed, values = each.time - first, each.values
     inside = (elapsed >= 0.0) & (elapsed <= length)
     elapsed, values = elapsed[inside], values[inside]
-    counts = []
+    counts: list[int] = []
     while len(elapsed) >> len(counts) >= _FEWEST:
         counts.append(len(elapsed) >> len(counts))
     if not counts:

@@ -59,7 +59,7 @@ class Nmea0183Player(Player):
         Outbox(self._tx).flush()
         Outbox(self._ais).flush()
 
-    def read(self, path: Path) -> Recording:
+    def recording(self, path: Path) -> Recording:
         """Return the sentences of a file. Raises InputError if none is left."""
         skipped: Counter[str] = Counter()
         sentences, stamps, own = [], [], []
@@ -96,7 +96,8 @@ def _has_checksum(sentence: str) -> bool:
 def _times(stamps: list[float | None], own: list[float | None]) -> list[float] | None:
     """Return the time of each sentence, s; None where nothing says any."""
     if stamps and None not in stamps:
-        return past_midnight([each or 0.0 for each in stamps]).tolist()
+        before: list[float] = past_midnight([each or 0.0 for each in stamps]).tolist()
+        return before
     placed = [(place, each) for place, each in enumerate(own) if each is not None]
     if not placed:
         return None
@@ -110,7 +111,8 @@ def _times(stamps: list[float | None], own: list[float | None]) -> list[float] |
     first = [epochs[0] - usual * min(places[0] / max(_per_epoch(places), 1.0), 1.0)]
     knots = np.concatenate(([0.0] if places[0] > 0.0 else [], places, [count]))
     at = np.concatenate((first if places[0] > 0.0 else [], epochs, ends))
-    return np.interp(np.arange(len(own)), knots, at).tolist()
+    found: list[float] = np.interp(np.arange(len(own)), knots, at).tolist()
+    return found
 
 
 def _per_epoch(places: Any) -> float:
