@@ -37,6 +37,8 @@ _SIDS = 253
 """Sequence identifiers run from 0 to 252."""
 _NETWORK = (59904, 60928, 126208)
 _DAY_S = 86400.0
+_ANY_RUDDER = 252
+"""Instance of 127245 that names no rudder, as networks of Raymarine have it."""
 _INTERVALS = 3
 """Standard intervals of a PGN for which its values are valid at least."""
 _STREAMS = 1 << 62
@@ -245,8 +247,10 @@ class Nmea2000(Nmea2000Ports):
         read = self._read(message)
         self._count(pgn, any(values is not None for values in read.values()))
         least = round(_INTERVALS * READABLE[pgn].interval_s * NS)
-        late = LATE.get(pgn, ())
-        return self._readings.take(when, str(message.source), str(pgn), read, least, late)
+        late, kind = LATE.get(pgn, ()), str(pgn)
+        if pgn == 127245 and message.fields.get("instance") not in (self._rudder, None):
+            late, kind = tuple(read), f"{kind} of any rudder"  # displays repeat those of others
+        return self._readings.take(when, str(message.source), kind, read, least, late)
 
     def _take_ais(self, when: int, message: Message) -> list[str]:
         found = report(message.pgn, message.fields)
@@ -262,7 +266,7 @@ class Nmea2000(Nmea2000Ports):
     def _read(self, message: Message) -> Values:
         """Return what a message says of quantities that are read here."""
         instance = message.fields.get("instance")
-        if message.pgn == 127245 and instance not in (self._rudder, None):
+        if message.pgn == 127245 and instance not in (self._rudder, None, _ANY_RUDDER):
             return {}
         return READERS[message.pgn](message.fields)
 
