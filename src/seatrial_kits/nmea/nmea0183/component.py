@@ -133,10 +133,8 @@ class Nmea0183(Nmea0183Ports):
         Outbox(self._out).flush()
 
     def sample(self, t: float, k: int) -> None:
-        """Publish what was received and ordered until now."""
-        now_ns = round(t * NS)
-        self._publish_received(now_ns)
-        orders = self._fresh(now_ns)
+        """Publish what was ordered until now."""
+        orders = self._fresh(round(t * NS))
         heading = heading_ordered(orders)
         place = orders["RMB"].place if "RMB" in orders else None
         self.target_valid = heading is not None or place is not None
@@ -152,10 +150,8 @@ class Nmea0183(Nmea0183Ports):
         report(self, self._endpoints)
 
     def update(self, t: float, k: int) -> None:
-        """Take in what has arrived, and send what is due."""
+        """Take in what has arrived and publish it, and send what is due."""
         now_ns = round(t * NS)
-        self._news = []
-        self._expires = min(self._received_values.expires(now_ns), self._targets.expires(now_ns))
         if self.water_speed_valid:
             self._distance += self.water_speed * self.period
         for endpoint in self._endpoints:
@@ -165,6 +161,7 @@ class Nmea0183(Nmea0183Ports):
                 whole = lines.take(data + end)
                 endpoint.budget.charge(channel, len(whole), SENTENCE_COST)
                 self._read(whole, now_ns)
+        self._publish_received(now_ns)
         readings: Readings | None = None
         for number, each in enumerate(self._schedule):
             if now_ns < self._begun_ns + self._counts[number] * each.period_ns:
@@ -312,6 +309,8 @@ class Nmea0183(Nmea0183Ports):
         self.received_messages = "; ".join(f"{kind} {some}/{all_}" for kind, (some, all_) in used)
         unread = sorted(self._unread.items())
         self.received_others = "; ".join(f"{kind} {count}" for kind, count in unread)
+        self._news = []
+        self._expires = min(self._received_values.expires(now_ns), self._targets.expires(now_ns))
 
     def _build(self) -> None:
         """Make the views of the state."""
