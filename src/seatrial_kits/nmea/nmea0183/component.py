@@ -23,7 +23,7 @@ from seatrial.model.sampled import Sampled
 from ..ais.codec import Assembly
 from ..ais.reports import report as ais_report
 from ..received.directions import Variation
-from ..received.memory import Received, preferred_sources
+from ..received.memory import Received, count, preferred_sources
 from ..received.outputs import QUANTITIES
 from ..received.publishing import Publisher, position
 from ..received.targets import Targets
@@ -272,7 +272,7 @@ class Nmea0183(Nmea0183Ports):
         """Take in the quantities of a sentence."""
         kind = message.msgID
         if kind not in READERS:
-            self._unread[kind] = self._unread.get(kind, 0) + 1
+            count(self._unread, kind)
             return
         read = READERS[kind](message)
         self._count(kind, any(values is not None for values in read.values()))

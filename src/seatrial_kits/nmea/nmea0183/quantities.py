@@ -19,6 +19,7 @@ _SPEED_UNITS = {"N": KNOT, "K": _KILOMETRES_PER_HOUR, "M": 1.0, "S": 1609.344 / 
 _PER_MINUTE = math.radians(1.0) / 60.0
 _RPM = math.tau / 60.0
 _BAR = 1e5
+_MOST_ENGINES = 99
 _LARGEST_ERROR = 1e3
 """Cross-track errors beyond so many miles are none."""
 
@@ -197,7 +198,7 @@ def _xdr(m: Any) -> Values:
 def _rpm(m: Any) -> Values:
     """Speed of an engine or its shaft: 0 and 1 are the first one."""
     number = _number(m, "engineshaftnum")
-    if number is None or number[0] < 0:
+    if number is None or not 0 <= number[0] <= _MOST_ENGINES:
         return {}
     speed = None if _text(m, "status") == "V" else _number(m, "rpm", _RPM)
     return {f"engine_speed {max(int(number[0]) - 1, 0)}": speed}

@@ -17,7 +17,7 @@ from seatrial_kits.can.operations import Transmit
 
 from ..ais.codec import Assembly
 from ..received.directions import Variation
-from ..received.memory import Received, Values, preferred_sources
+from ..received.memory import Received, Values, count, preferred_sources
 from ..received.outputs import ORDERED, QUANTITIES
 from ..received.publishing import Publisher, position
 from ..received.targets import Targets
@@ -278,7 +278,7 @@ class Nmea2000(Nmea2000Ports):
     def _count_unread(self, pgn: int) -> None:
         """Count a message that is not read, or a frame of a PGN that is not known."""
         if pgn not in ALL or (pgn in DATA and pgn not in READERS and pgn not in AIS_PGNS):
-            self._unread[str(pgn)] = self._unread.get(str(pgn), 0) + 1
+            count(self._unread, str(pgn))
 
     def _given_variation(self) -> Variation | None:
         value: float = self.variation
