@@ -31,7 +31,7 @@ from .codec import decode, encode
 from .lines import Lines
 from .orders import Order, heading_ordered, last_reported, read_order
 from .ports import Nmea0183Ports
-from .quantities import LATE, READERS
+from .quantities import LATE, READERS, quantities_of
 from .readings import Readings
 from .schedule import schedule
 from .sentences import SENTENCES
@@ -274,7 +274,7 @@ class Nmea0183(Nmea0183Ports):
         if kind not in READERS:
             count(self._unread, kind)
             return
-        read = READERS[kind](message)
+        read = quantities_of(message)
         self._count(kind, any(values is not None for values in read.values()))
         late = LATE.get(kind, ())
         received = self._received_values.take(now_ns, message.talker, kind, read, late=late)

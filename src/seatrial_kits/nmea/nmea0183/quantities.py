@@ -357,3 +357,12 @@ LATE: dict[str, tuple[str, ...]] = {
     "VHW": ("heading", "magnetic_heading"),
 }
 """Quantities that a sentence repeats of others, by formatter: used where nothing else has them."""
+
+
+def quantities_of(message: Any) -> Values:
+    """Return the quantities of a sentence of `READERS`; numbers beyond a double's are none."""
+    read = READERS[message.msgID](message)
+    return {
+        name: values if values is not None and all(map(math.isfinite, values)) else None
+        for name, values in read.items()
+    }
