@@ -20,6 +20,8 @@ _PER_MINUTE = math.radians(1.0) / 60.0
 _RPM = math.tau / 60.0
 _BAR = 1e5
 _MOST_ENGINES = 99
+_NO_DATES = 65532
+"""Days since 1970 from which on a date is none, as on NMEA 2000."""
 _LARGEST_ERROR = 1e3
 """Cross-track errors beyond so many miles are none."""
 
@@ -73,9 +75,10 @@ def _date(m: Any) -> Values:
     if not isinstance(day, datetime.date):
         try:
             day = datetime.date(int(m.year), int(m.month), int(m.day))
-        except (AttributeError, TypeError, ValueError):
+        except (AttributeError, OverflowError, TypeError, ValueError):
             return {}
-    return {"date": (float((day - datetime.date(1970, 1, 1)).days),)}
+    days = (day - datetime.date(1970, 1, 1)).days
+    return {"date": (float(days),) if 0 < days < _NO_DATES else None}
 
 
 def _fix(m: Any) -> Values:
