@@ -10,6 +10,7 @@ from parts.can import ports
 from parts.markdown import table
 from seatrial_kits.can.dronecan.allocation import Allocation
 from seatrial_kits.can.dronecan.autopilot import DroneCanAutopilot
+from seatrial_kits.can.dronecan.instruments import MagneticField
 from seatrial_kits.can.dronecan.navigation import NOT_CONNECTED
 from seatrial_kits.can.dronecan.node import GetNodeInfo, NodeStatus, RestartNode
 from seatrial_kits.can.dronecan.parameters import ExecuteOpcode, GetSet
@@ -39,6 +40,8 @@ def messages() -> str:
         if kind in _ALL:
             both = kind is NodeStatus and kind in own.messages
             return f"{_ALL[kind]}, takes in" if both else _ALL[kind]
+        if kind is MagneticField and own is DroneCanPeripheral:  # its successor goes out
+            return ""
         return "takes in" if kind in own.messages else "says"
 
     kinds = {*DroneCanPeripheral.messages, *DroneCanAutopilot.messages, *_ALL}

@@ -9,6 +9,7 @@ import pynmea2
 from seatrial_kits.nmea.nmea0183.codec import decode
 from seatrial_kits.nmea.nmea0183.lines import Lines
 from seatrial_kits.nmea.nmea0183.orders import read_order
+from seatrial_kits.nmea.nmea0183.quantities import READERS, quantities_of
 
 _LONGEST = 1024
 
@@ -30,6 +31,8 @@ def one(data: bytes) -> None:
         order = read_order(message, 0.1)
         numbers = [] if order is None else [v for v in vars(order).values() if type(v) is float]
         assert all(map(math.isfinite, numbers))
+        quantities = quantities_of(message) if message.msgID in READERS else {}
+        assert all(math.isfinite(v) for values in quantities.values() for v in values or ())
 
 
 def _completed(line: bytes) -> bytes:

@@ -22,6 +22,10 @@ _ATTRIBUTE = re.compile(
     r'\s*BA_\s+"(?P<name>\w+)"\s+'
     r"(?:BO_\s+(?P<id>\d+)|SG_\s+(?P<of>\d+)\s+(?P<signal>\w+))?"
 )
+_IDENTIFIER = re.compile(
+    r'\s*(?:BO_|SIG_VALTYPE_|SG_MUL_VAL_|BA_\s+"\w+"\s+(?:BO_|SG_))\s+(?P<id>\d{1,10})\b'
+)
+_LARGEST_STANDARD, _LARGEST_EXTENDED, _EXTENDED = 0x7FF, 0x1FFFFFFF, 1 << 31
 _LONG_NAME = "SystemMessageLongSymbol"
 _ATTRIBUTES = {
     "GenMsgCycleTime",
@@ -69,7 +73,7 @@ def excerpt(text: str, wanted: Collection[str]) -> str:
         found = _MESSAGE.match(text, start, end) if kind == "BO_" else None
         own = found is not None and (found["id"], found.start("id")) in kept
         if own or _belongs(text, kind, start, end, identifiers, blocks):
-            parts += [_blank(text[done:start]), text[start:end]]
+            parts += [_blank(text[done:start]), _marked(text[start:end])]
             done = end
     return "".join([*parts, _blank(text[done:])])
 
@@ -128,6 +132,18 @@ def _belongs(
             and _has(blocks[found["id"]], found["signal"])
         )
     return False
+
+
+def _marked(statement: str) -> str:
+    """Return a statement whose identifier is marked as extended if it has more than 11 bits.
+
+    Bit 31 is the mark; files that people write lack it, where 29 bits are meant.
+    """
+    found = _IDENTIFIER.match(statement)
+    if found is None or not _LARGEST_STANDARD < int(found["id"]) <= _LARGEST_EXTENDED:
+        return statement
+    marked = int(found["id"]) | _EXTENDED
+    return f"{statement[: found.start('id')]}{marked}{statement[found.end('id') :]}"
 
 
 def _has(block: str, signal: str | None) -> bool:

@@ -23,7 +23,7 @@ from seatrial.model.sampled import Sampled
 from ..ais.codec import Assembly
 from ..ais.reports import report as ais_report
 from ..received.directions import Variation
-from ..received.memory import Received, preferred_sources
+from ..received.memory import Received, count, preferred_sources
 from ..received.outputs import QUANTITIES
 from ..received.publishing import Publisher, position
 from ..received.targets import Targets
@@ -31,7 +31,7 @@ from .codec import decode, encode
 from .lines import Lines
 from .orders import Order, heading_ordered, last_reported, read_order
 from .ports import Nmea0183Ports
-from .quantities import LATE, READERS
+from .quantities import LATE, READERS, quantities_of
 from .readings import Readings
 from .schedule import schedule
 from .sentences import SENTENCES
@@ -133,10 +133,8 @@ class Nmea0183(Nmea0183Ports):
         Outbox(self._out).flush()
 
     def sample(self, t: float, k: int) -> None:
-        """Publish what was received and ordered until now."""
-        now_ns = round(t * NS)
-        self._publish_received(now_ns)
-        orders = self._fresh(now_ns)
+        """Publish what was ordered until now."""
+        orders = self._fresh(round(t * NS))
         heading = heading_ordered(orders)
         place = orders["RMB"].place if "RMB" in orders else None
         self.target_valid = heading is not None or place is not None
@@ -152,10 +150,8 @@ class Nmea0183(Nmea0183Ports):
         report(self, self._endpoints)
 
     def update(self, t: float, k: int) -> None:
-        """Take in what has arrived, and send what is due."""
+        """Take in what has arrived and publish it, and send what is due."""
         now_ns = round(t * NS)
-        self._news = []
-        self._expires = min(self._received_values.expires(now_ns), self._targets.expires(now_ns))
         if self.water_speed_valid:
             self._distance += self.water_speed * self.period
         for endpoint in self._endpoints:
@@ -165,6 +161,7 @@ class Nmea0183(Nmea0183Ports):
                 whole = lines.take(data + end)
                 endpoint.budget.charge(channel, len(whole), SENTENCE_COST)
                 self._read(whole, now_ns)
+        self._publish_received(now_ns)
         readings: Readings | None = None
         for number, each in enumerate(self._schedule):
             if now_ns < self._begun_ns + self._counts[number] * each.period_ns:
@@ -275,9 +272,9 @@ class Nmea0183(Nmea0183Ports):
         """Take in the quantities of a sentence."""
         kind = message.msgID
         if kind not in READERS:
-            self._unread[kind] = self._unread.get(kind, 0) + 1
+            count(self._unread, kind)
             return
-        read = READERS[kind](message)
+        read = quantities_of(message)
         self._count(kind, any(values is not None for values in read.values()))
         late = LATE.get(kind, ())
         received = self._received_values.take(now_ns, message.talker, kind, read, late=late)
@@ -312,6 +309,8 @@ class Nmea0183(Nmea0183Ports):
         self.received_messages = "; ".join(f"{kind} {some}/{all_}" for kind, (some, all_) in used)
         unread = sorted(self._unread.items())
         self.received_others = "; ".join(f"{kind} {count}" for kind, count in unread)
+        self._news = []
+        self._expires = min(self._received_values.expires(now_ns), self._targets.expires(now_ns))
 
     def _build(self) -> None:
         """Make the views of the state."""

@@ -19,6 +19,9 @@ _SPEED_UNITS = {"N": KNOT, "K": _KILOMETRES_PER_HOUR, "M": 1.0, "S": 1609.344 / 
 _PER_MINUTE = math.radians(1.0) / 60.0
 _RPM = math.tau / 60.0
 _BAR = 1e5
+_MOST_ENGINES = 99
+_NO_DATES = 65532
+"""Days since 1970 from which on a date is none, as on NMEA 2000."""
 _LARGEST_ERROR = 1e3
 """Cross-track errors beyond so many miles are none."""
 
@@ -72,9 +75,10 @@ def _date(m: Any) -> Values:
     if not isinstance(day, datetime.date):
         try:
             day = datetime.date(int(m.year), int(m.month), int(m.day))
-        except (AttributeError, TypeError, ValueError):
+        except (AttributeError, OverflowError, TypeError, ValueError):
             return {}
-    return {"date": (float((day - datetime.date(1970, 1, 1)).days),)}
+    days = (day - datetime.date(1970, 1, 1)).days
+    return {"date": (float(days),) if 0 < days < _NO_DATES else None}
 
 
 def _fix(m: Any) -> Values:
@@ -197,7 +201,7 @@ def _xdr(m: Any) -> Values:
 def _rpm(m: Any) -> Values:
     """Speed of an engine or its shaft: 0 and 1 are the first one."""
     number = _number(m, "engineshaftnum")
-    if number is None or number[0] < 0:
+    if number is None or not 0 <= number[0] <= _MOST_ENGINES:
         return {}
     speed = None if _text(m, "status") == "V" else _number(m, "rpm", _RPM)
     return {f"engine_speed {max(int(number[0]) - 1, 0)}": speed}
@@ -356,3 +360,12 @@ LATE: dict[str, tuple[str, ...]] = {
     "VHW": ("heading", "magnetic_heading"),
 }
 """Quantities that a sentence repeats of others, by formatter: used where nothing else has them."""
+
+
+def quantities_of(message: Any) -> Values:
+    """Return the quantities of a sentence of `READERS`; numbers beyond a double's are none."""
+    read = READERS[message.msgID](message)
+    return {
+        name: values if values is not None and all(map(math.isfinite, values)) else None
+        for name, values in read.items()
+    }

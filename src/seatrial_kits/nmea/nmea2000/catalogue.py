@@ -69,7 +69,7 @@ _DATA = {
             2,
             0.1,
             (
-                Field("instance", "rudder_instance", sense="only this instance is read"),
+                Field("instance", "rudder_instance", sense="read: this instance, else 252"),
                 Field(
                     "directionOrder",
                     "rudder_order",

@@ -17,7 +17,7 @@ from seatrial_kits.can.operations import Transmit
 
 from ..ais.codec import Assembly
 from ..received.directions import Variation
-from ..received.memory import Received, Values, preferred_sources
+from ..received.memory import Received, Values, count, preferred_sources
 from ..received.outputs import ORDERED, QUANTITIES
 from ..received.publishing import Publisher, position
 from ..received.targets import Targets
@@ -37,6 +37,8 @@ _SIDS = 253
 """Sequence identifiers run from 0 to 252."""
 _NETWORK = (59904, 60928, 126208)
 _DAY_S = 86400.0
+_ANY_RUDDER = 252
+"""Instance of 127245 that names no rudder, as networks of Raymarine have it."""
 _INTERVALS = 3
 """Standard intervals of a PGN for which its values are valid at least."""
 _STREAMS = 1 << 62
@@ -245,8 +247,10 @@ class Nmea2000(Nmea2000Ports):
         read = self._read(message)
         self._count(pgn, any(values is not None for values in read.values()))
         least = round(_INTERVALS * READABLE[pgn].interval_s * NS)
-        late = LATE.get(pgn, ())
-        return self._readings.take(when, str(message.source), str(pgn), read, least, late)
+        late, kind = LATE.get(pgn, ()), str(pgn)
+        if pgn == 127245 and message.fields.get("instance") not in (self._rudder, None):
+            late, kind = tuple(read), f"{kind} of any rudder"  # displays repeat those of others
+        return self._readings.take(when, str(message.source), kind, read, least, late)
 
     def _take_ais(self, when: int, message: Message) -> list[str]:
         found = report(message.pgn, message.fields)
@@ -262,7 +266,7 @@ class Nmea2000(Nmea2000Ports):
     def _read(self, message: Message) -> Values:
         """Return what a message says of quantities that are read here."""
         instance = message.fields.get("instance")
-        if message.pgn == 127245 and instance not in (self._rudder, None):
+        if message.pgn == 127245 and instance not in (self._rudder, None, _ANY_RUDDER):
             return {}
         return READERS[message.pgn](message.fields)
 
@@ -274,7 +278,7 @@ class Nmea2000(Nmea2000Ports):
     def _count_unread(self, pgn: int) -> None:
         """Count a message that is not read, or a frame of a PGN that is not known."""
         if pgn not in ALL or (pgn in DATA and pgn not in READERS and pgn not in AIS_PGNS):
-            self._unread[str(pgn)] = self._unread.get(str(pgn), 0) + 1
+            count(self._unread, str(pgn))
 
     def _given_variation(self) -> Variation | None:
         value: float = self.variation

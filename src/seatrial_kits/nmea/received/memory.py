@@ -13,6 +13,9 @@ _INTERVALS = 3
 _SLOWEST_NS = 5_000_000_000
 """Senders with longer intervals have the standard's."""
 
+_MOST_KINDS = 200
+"""Kinds of messages that are counted by themselves."""
+
 HELM = ("heading_to_steer", "track", "steering_mode")
 """Quantities that are orders to who steers: the newest one counts, whoever gave it."""
 
@@ -182,6 +185,12 @@ class Received:
     @staticmethod
     def _valid(known: dict[str, Any], now_ns: int) -> bool:
         return bool(known.get("until", -1) >= now_ns)
+
+
+def count(counts: dict[str, int], kind: str) -> None:
+    """Count a message of a kind that is not read; noise has many kinds, the rest are one."""
+    key = kind if kind in counts or len(counts) < _MOST_KINDS else "rest"
+    counts[key] = counts.get(key, 0) + 1
 
 
 def preferred_sources(text: str, quantities: Collection[str]) -> dict[str, list[str]]:

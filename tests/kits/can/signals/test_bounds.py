@@ -196,6 +196,19 @@ def test_a_fault_in_a_message_that_is_asked_for_is_an_error_with_its_line(tmp_pa
         signals(file, sends="Usd.Level")
 
 
+def test_identifiers_beyond_eleven_bits_are_extended_with_and_without_their_mark(tmp_path):
+    file = tmp_path / "own.dbc"
+    attributes = 'BA_DEF_ BO_ "GenMsgCycleTime" INT 0 65535;\n'
+    attributes += 'BA_DEF_DEF_ "GenMsgCycleTime" 0;\nBA_ "GenMsgCycleTime" BO_ 313393063 20;\n'
+    value = signal("V", "0|32@1-", '(1,0) [0|0] "" B')
+    text = HEAD + message(4, value, number=0x12ADFFA7, name="A") + attributes
+    file.write_text(text + "SIG_VALTYPE_ 313393063 V : 1;\n", "utf-8")
+    node = signals(file, sends="A.V")
+    found = node._sends[0].message
+    assert (found.frame_id, found.is_extended_frame, found.cycle_time) == (0x12ADFFA7, True, 20)
+    assert node._sends[0].signal.is_float
+
+
 def test_units_in_words_and_limits_beyond_the_bits_are_notes(tmp_path):
     file = tmp_path / "own.dbc"
     rpm = signal("Rpm", "0|8@1-", '(1,0) [0|65535] "" B')

@@ -214,6 +214,18 @@ def test_winds_by_their_references(network, reference):
         assert node.get("bus_water_wind_angle") == pytest.approx(1.0 - math.pi, abs=1e-4)
 
 
+def test_a_rudder_that_is_not_named_stands_in_for_the_one_that_is(network):
+    """As in recordings of Raymarine: 0 has the angle, 252 of the same node has none."""
+    node = send(network, 127245, PILOT, instance=252, position=0.2)
+    assert node.get("bus_rudder") == pytest.approx(0.2, abs=1e-4)
+    send(network, 127245, COMPASS, instance=0, position=0.1)
+    send(network, 127245, COMPASS, instance=252, directionOrder=0)
+    send(network, 127245, PILOT, instance=252, position=0.2)
+    send(network, 127245, COMPASS, instance=1, position=0.3)
+    assert node.get("bus_rudder") == pytest.approx(0.1, abs=1e-4)
+    assert node.get("bus_rudder_valid")
+
+
 def test_engines_navigation_and_surroundings(network):
     send(network, 127488, GNSS, instance=1, speed=1200.0)
     send(network, 127489, GNSS, instance=1, fuelRate=36.0, temperature=350.0, engineLoad=40)
