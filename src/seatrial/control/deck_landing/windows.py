@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 
@@ -41,9 +42,9 @@ class Windows(DeckEstimate, Component):
 
     def reset_windows(self, t: float) -> None:
         """Have nothing fitted and no window."""
-        self._fitted = np.zeros((0, prediction.ORDER))
+        self._fitted: Any = []
         self._fitted_at = self._searched = -math.inf
-        self._future = np.zeros((0, 3))
+        self._future: Any = []
         self._future_of = -1
         self._target = -1.0
 
