@@ -63,6 +63,15 @@ class DeckReport(Sensor):
         ),
     }
 
+    feedthrough: ClassVar = {
+        "valid": ("fault",),
+        "count": ("fault",),
+        "deck_attitude": ("attitude", "fault"),
+        "deck_rates": ("rates", "fault"),
+        "pad_velocity": ("attitude", "velocity", "rates", "fault"),
+        "reported": (),
+    }
+
     def measure(self) -> Sequence[Value]:
         """Return attitude, rates and the pad's velocity."""
         swing = cross(self.rates, self.pad)
