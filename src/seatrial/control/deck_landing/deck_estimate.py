@@ -163,7 +163,7 @@ class DeckEstimate(Component):
 
     def sample_step(self) -> float:
         """Return the time between two samples, s."""
-        return max(self.wave_period, 0.1) / PER_PERIOD
+        return max(float(self.wave_period), 0.1) / PER_PERIOD
 
     def _tilt_at(self, t: float) -> tuple[float, float]:
         """Return the slopes to north and east at ``t``, by the last report and its rates."""

@@ -81,7 +81,7 @@ class Windows(DeckEstimate, Component):
         half = 0.5 * self.sample_step()
         rising = self.predicted(self._target + half)[0] - self.predicted(self._target - half)[0]
         meeting = -float(rising) / (2.0 * half) + _TOUCH
-        return laws.rendezvous(-float(at[0]) - down, velocity, meeting, left)
+        return float(laws.rendezvous(-float(at[0]) - down, velocity, meeting, left))
 
     def predicted(self, t: float) -> Array:
         """Return heave upwards, m, and slopes to north and east at ``t``."""
@@ -106,7 +106,8 @@ class Windows(DeckEstimate, Component):
         at, before = self.predicted(t + T + half), self.predicted(t + T - half)
         rate = float(at[0] - before[0]) / (2.0 * half)
         late = _LATE * T / self.wave_period
-        return (_tilt(0.5 * (at + before)) / _LEVEL) ** 2 + (rate / _HEAVE_RATE) ** 2 + late**2
+        tilted = _tilt(0.5 * (at + before)) / _LEVEL
+        return float(tilted**2 + (rate / _HEAVE_RATE) ** 2 + late**2)
 
 
 def _tilt(row: Array) -> float:
