@@ -24,7 +24,9 @@ KNOWN = {"fault": "none", "target_valid": True, "leg": 1}
 """A craft that is sent to where it is has no direction: it is always sent somewhere."""
 HALF_CIRCLES = {"course", "heading_wanted"}
 """Headings that are published from -pi to pi."""
-PLACES = {"position", "station_position", "first_position", "second_position"}
+PLACES = {
+    *("position", "deck_position", "station_position", "first_position", "second_position"),
+}
 SAMPLES = 40
 
 

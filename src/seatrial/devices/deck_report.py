@@ -1,4 +1,4 @@
-"""What a craft reports by radio of the motion of its landing pad."""
+"""Report by radio of the motion of a craft's landing pad."""
 
 from __future__ import annotations
 
@@ -54,10 +54,22 @@ class DeckReport(Sensor):
     terminals: ClassVar = {
         "motion": terminal("attitude", "velocity", "rates"),
         "report": terminal(
-            *("deck_attitude", "deck_rates", "pad_velocity", "reported"),
+            "deck_attitude",
+            "deck_rates",
+            "pad_velocity",
+            "reported",
             report_valid="valid",
             report_count="count",
         ),
+    }
+
+    feedthrough: ClassVar = {
+        "valid": ("fault",),
+        "count": ("fault",),
+        "deck_attitude": ("attitude", "fault"),
+        "deck_rates": ("rates", "fault"),
+        "pad_velocity": ("attitude", "velocity", "rates", "fault"),
+        "reported": (),
     }
 
     def measure(self) -> Sequence[Value]:

@@ -38,7 +38,11 @@ class RelativePose(Sensor):
     Not modelled: images, occlusion by the drone's legs, glare, false marks, heading of the pad.
     """
 
-    exercised: ClassVar = {"deck_position": [0.2, 0.1, 3.0], "rates": [0.2, 0.1, 0.0]}
+    exercised: ClassVar = {
+        "deck_position": [0.2, 0.1, 3.0],
+        "rates": [0.2, 0.1, 0.0],
+        "exposure": 0.02,
+    }
 
     period = Parameter(0.05, "s", "time from frame to frame", min=1e-6)
     delay = Parameter(0.06, "s", "time from exposure to output", min=0.0)
@@ -70,6 +74,14 @@ class RelativePose(Sensor):
         "motion": terminal("position", "attitude", "rates"),
         "deck": terminal(position="deck_position", attitude="deck_attitude"),
         "sight": terminal("offset", "exposed", sight_valid="valid", sight_count="count"),
+    }
+
+    _SEEN = ("position", "attitude", "deck_position", "deck_attitude", "fault")
+    feedthrough: ClassVar = {
+        "valid": _SEEN,
+        "count": _SEEN,
+        "offset": (*_SEEN, "rates"),
+        "exposed": (),
     }
 
     def reset(self, t: float) -> None:

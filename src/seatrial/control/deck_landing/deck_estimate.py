@@ -1,4 +1,4 @@
-"""What a drone knows of a landing pad from its camera and the craft's reports."""
+"""Estimate of a landing pad's motion from a drone's camera and the craft's reports."""
 
 from __future__ import annotations
 
@@ -57,15 +57,20 @@ class DeckEstimate(Component):
         "motion": terminal("position", "velocity", "attitude", "rates"),
         "sight": terminal("offset", "exposed", "sight_valid", "sight_count"),
         "report": terminal(
-            *("deck_attitude", "deck_rates", "pad_velocity", "reported"),
-            *("report_valid", "report_count"),
+            "deck_attitude",
+            "deck_rates",
+            "pad_velocity",
+            "reported",
+            "report_valid",
+            "report_count",
         ),
     }
     exercised: ClassVar = {"sight_valid": True, "sight_count": 1, "offset": [0.1, 0.0, 2.0]}
 
     def reset_estimate(self, t: float) -> None:
         """Know nothing of the deck."""
-        self._x = self._P = np.zeros((0, 3))
+        self._x: Any = []
+        self._P: Any = []
         self._at = t
         self._seen, self._sights, self._reports = -math.inf, 0, 0
         self._own: list[list[float]] = []
@@ -158,7 +163,7 @@ class DeckEstimate(Component):
 
     def sample_step(self) -> float:
         """Return the time between two samples, s."""
-        return max(self.wave_period, 0.1) / PER_PERIOD
+        return max(float(self.wave_period), 0.1) / PER_PERIOD
 
     def _tilt_at(self, t: float) -> tuple[float, float]:
         """Return the slopes to north and east at ``t``, by the last report and its rates."""

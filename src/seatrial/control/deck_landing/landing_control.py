@@ -94,6 +94,8 @@ class DeckLandingControl(Windows, DeckEstimate, Sampled):
     def sample(self, t: float, k: int) -> None:
         """Publish the orders of the instant before: what an autopilot computes takes a period."""
         thrust, attitude, motors, height, error = self._held
+        if self._mode == OFF:
+            attitude = [0.0, 0.0, self.attitude[2]]
         self.thrust, self.attitude_wanted, self.motors = thrust, attitude, motors
         self.mode, self.go_arounds = float(self._mode), self._around
         self.height, self.error, self.window = height, error, max(self._target, 0.0)
@@ -104,7 +106,7 @@ class DeckLandingControl(Windows, DeckEstimate, Sampled):
         deck = self.deck_at(t)
         own = [float(v) for v in to_ned(self.attitude, self.velocity)]
         if not self._home:
-            self._home = [*self.position]
+            self._home = [*self.position, self.attitude[2]]
             self._change(TAKE_OFF if self.starts_from == "deck" else self._after_start(), t)
         height = float(deck[0][2]) - self.position[2] - self.feet[2]
         error = [float(deck[0][i]) - self.position[i] for i in range(2)]
@@ -181,8 +183,8 @@ class DeckLandingControl(Windows, DeckEstimate, Sampled):
     # ------------------------------------------------------------------ laws
 
     def _heading(self) -> float:
-        """Return the heading to hold: the craft's, as last reported."""
-        return self.deck_heading()
+        """Return the heading to hold: the craft's as last reported, before that its own."""
+        return self.deck_heading() if self._reports else float(self._home[3])
 
     def _aside(
         self, t: float, deck: Array, own: Sequence[float], error: Sequence[float], height: float

@@ -77,7 +77,7 @@ def harmonic(samples: Array, steps: int) -> Array:
         covariance = np.cos(np.outer(lags, _BANK)) @ weights
         known = covariance[rows] + noise[axis] * np.eye(count)
         found[:, axis] = covariance[later] @ np.linalg.solve(known, about[:, axis])
-    return found * spread + mean
+    return np.asarray(found * spread + mean)
 
 
 def _expected(power: int) -> Array:

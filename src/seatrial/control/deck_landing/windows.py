@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 
@@ -41,9 +42,9 @@ class Windows(DeckEstimate, Component):
 
     def reset_windows(self, t: float) -> None:
         """Have nothing fitted and no window."""
-        self._fitted = np.zeros((0, prediction.ORDER))
+        self._fitted: Any = []
         self._fitted_at = self._searched = -math.inf
-        self._future = np.zeros((0, 3))
+        self._future: Any = []
         self._future_of = -1
         self._target = -1.0
 
@@ -80,7 +81,7 @@ class Windows(DeckEstimate, Component):
         half = 0.5 * self.sample_step()
         rising = self.predicted(self._target + half)[0] - self.predicted(self._target - half)[0]
         meeting = -float(rising) / (2.0 * half) + _TOUCH
-        return laws.rendezvous(-float(at[0]) - down, velocity, meeting, left)
+        return float(laws.rendezvous(-float(at[0]) - down, velocity, meeting, left))
 
     def predicted(self, t: float) -> Array:
         """Return heave upwards, m, and slopes to north and east at ``t``."""
@@ -105,7 +106,8 @@ class Windows(DeckEstimate, Component):
         at, before = self.predicted(t + T + half), self.predicted(t + T - half)
         rate = float(at[0] - before[0]) / (2.0 * half)
         late = _LATE * T / self.wave_period
-        return (_tilt(0.5 * (at + before)) / _LEVEL) ** 2 + (rate / _HEAVE_RATE) ** 2 + late**2
+        tilted = _tilt(0.5 * (at + before)) / _LEVEL
+        return float(tilted**2 + (rate / _HEAVE_RATE) ** 2 + late**2)
 
 
 def _tilt(row: Array) -> float:

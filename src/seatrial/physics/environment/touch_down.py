@@ -77,10 +77,6 @@ class TouchDown(Component):
             attitude="deck_attitude",
             rates="deck_rates",
         ),
-        "touch": terminal(
-            *("touched", "touch_time", "touch_error", "touch_speed", "touch_aside", "touch_tilt"),
-            *("deck_tilt", "landed", "failure", "energy", "peak_load", "height"),
-        ),
     }
     _LATCHED = ("touch_error", "touch_speed", "touch_aside", "touch_tilt", "deck_tilt")
     _KEPT = (*_LATCHED, "touched", "touch_time", "landed", "failure", "energy", "peak_load")

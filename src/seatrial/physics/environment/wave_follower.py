@@ -135,7 +135,7 @@ def read(file: Path, called: str) -> Follower:
 
 def _at_rest(period: float, pad: float) -> Follower:
     none = np.zeros(1)
-    return Follower(*[none] * 8, period=period, pad_height=pad)
+    return Follower(none, none, none, none, none, none, none, none, period, pad)
 
 
 def _mean(x: Array) -> Array:
