@@ -23,10 +23,10 @@ from .mcus import CLOCK, MCUS, Mcu
 from .measuring import check_ports, measured
 from .part import Part, UartPart, part_failed
 from .parts.shelf import part_class
+from .platformio import project_mcu, project_of, read_project
 from .ports import ArduinoPorts
 from .pulses import Pulses
 from .real_board import RealBoard
-from .platformio import project_mcu, project_of, read_project
 from .sketch import Sketch, find_sketch
 from .uart_links import open_links
 from .wiring import STEPPERS, UARTS, Wire, read_uarts, read_wires
@@ -80,7 +80,7 @@ class Arduino(ArduinoPorts):
     discrete = True
     rolls_back = False
     transient = Component.transient | {
-        *("_board", "_eeprom", "_monitors", "_parts", "_measured", "_pulses", "_wires", "field_n")
+        *("_board", "_eeprom", "_monitors", "_parts", "_measured", "_pulses", "_wires", "_field_n")
     }
 
     def __init__(self, name: str = "component") -> None:
@@ -101,7 +101,7 @@ class Arduino(ArduinoPorts):
             there = {*range(mcu.uarts), *(w.number for w in self._wires if w.kind in _SOFT)}
             self._rates = {k: v for k, v in read_uarts(self.uarts).items() if k in there}
             self._eeprom = read_eeprom(self.eeprom, mcu)
-            self.field_n = self._field()
+            self._field_n = self._field()
             self._parts = self._made_parts()
             self._begin()
             self._monitors = open_links(self.monitors, "monitors")
@@ -276,7 +276,7 @@ class Arduino(ArduinoPorts):
     def _measure(self, inputs: Inputs) -> None:
         """Let each part take in what has changed, and say what it sends."""
         for index, part in enumerate(self._parts):
-            values = measured(self, part)
+            values = measured(self, part, self._field_n)
             if values != self._measured[index] or isinstance(part, UartPart):
                 self._measured[index] = values
                 try:

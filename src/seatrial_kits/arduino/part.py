@@ -1,8 +1,8 @@
 """Parts at a board's buses and pins: what a file of one declares and does, for every back end.
 
-A part is a class of one of the kinds here. Its registers are data; `Part.measure` fills them from the
-ports that it names, at the beginning of each step in which these have changed. The board reads and
-writes registers by itself: the class is called for those only that are declared so.
+A part is a class of one of the kinds here. Its registers are data; `Part.measure` fills them from
+the ports that it names, at the beginning of each step in which these have changed. The board reads
+and writes registers by itself: the class is called for those only that are declared so.
 """
 
 from __future__ import annotations
@@ -51,8 +51,8 @@ class Register:
 
     ``form`` is its format: ``u8 s16be u16le`` and so on, of one byte and more. ``access`` is
     ``rw``, ``r`` (writing does nothing), ``acts`` (`I2CRegisters.written` follows a write) or
-    ``latches`` (`I2CRegisters.reading` precedes a read). What is written to one of ``rw`` stays at the
-    board: a part that needs it declares ``acts``.
+    ``latches`` (`I2CRegisters.reading` precedes a read). A value that a sketch writes to a register
+    of ``rw`` stays at the board: a part that needs the value declares ``acts``.
     """
 
     at: int
@@ -84,7 +84,7 @@ def packed(form: str, value: float) -> bytes:
     return round(min(max(low, value), high)).to_bytes(size, order, signed=signed)
 
 
-def unpacked(form: str, data: bytes) -> int:
+def unpacked(form: str, data: bytes | bytearray) -> int:
     """Return the number in bytes of a register's format."""
     _, order, signed, _, _ = _format(form)
     return int.from_bytes(data, order, signed=signed)
@@ -94,9 +94,9 @@ class Part:
     """A part at ``places`` of a board: an I2C address, or pins.
 
     ``ports`` names the inputs of `Arduino` that it measures; they are in ``inputs``, SI units, each
-    a number or a tuple. Of ports in groups (``angle``, ``distance``, ``temperature``) it has the one of the
-    number behind its name in ``wires``. ``pulses`` has the widths of pulses that it makes, s, by number of the
-    output ``pulse``.
+    a number or a tuple. Of ports in groups (``angle``, ``distance``, ``temperature``) it has the
+    one of the number behind its name in ``wires``. ``pulses`` has the widths of pulses that it
+    makes, s, by number of the output ``pulse``.
     """
 
     ports: ClassVar[tuple[str, ...]] = ()
@@ -154,7 +154,7 @@ class Part:
         self._records = Inputs()
 
     def drive(self, pin: int, levels: Iterable[tuple[float, int]]) -> None:
-        """Drive a pin: (time, level) of each change, s; `NONE` leaves it. What was to come is dropped."""
+        """Drive a pin: (time, level) of each change, s; earlier plans are dropped. See `NONE`."""
         self._records.put("f", pin)
         for when, level in levels:
             self._records.put("d", pin, float(round(when * CLOCK)), level)
@@ -195,7 +195,7 @@ class I2CRegisters(Part):
         return pointer + 1
 
     def written(self, name: str, value: int) -> bool:
-        """Act on a value that was written to a register that acts; return whether it is acknowledged."""
+        """Act on a value written to a register that acts; return whether it is acknowledged."""
         return True
 
     def reading(self, name: str) -> None:
@@ -288,7 +288,7 @@ class I2CStream(Part):
         return True
 
     def begun(self, left: int) -> None:
-        """Prepare a reply: it is addressed for reading; ``left`` bytes of the last have not been read."""
+        """Prepare a reply, for a reading begins; ``left`` bytes of the last are unread."""
 
     def reply(self, data: bytes, beyond: int = 0) -> None:
         """Let ``data`` be read next, then ``beyond`` for ever."""

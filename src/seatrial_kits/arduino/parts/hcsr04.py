@@ -15,7 +15,8 @@ _NEAREST, _FARTHEST = 0.02, 4.0
 class HcSr04(PinPart):
     """At the pins of trigger and echo: a ``distance`` of the board, m, as the width of the echo.
 
-    width = 2 d / c, with c = 331.3 + 0.606 t, t in deg C of a ``temperature``. Nothing between 2 cm and 4 m: 38 ms.
+    width = 2 d / c, with c = 331.3 + 0.606 t, t in deg C of a ``temperature``. Nothing between 2 cm
+    and 4 m: 38 ms.
     """
 
     ports = ("distance", "temperature")

@@ -13,7 +13,7 @@ _SLEEP = 0x40
 
 
 class Mpu6050(I2CRegisters):
-    """Angular velocity and specific force, body axes, in ranges by 0x1B and 0x1C; asleep at power-on.
+    """Angular velocity and specific force, body axes, in ranges by 0x1B and 0x1C; asleep at first.
 
     131 counts per deg/s and 16384 per g in the smallest ranges, halved with each; 340 per K from
     36.53 deg C on.
