@@ -332,7 +332,7 @@ class Arduino(ArduinoPorts):
     def _channel(self, wire: Wire) -> int:
         return wire.place - self._board_mcu().first_analog
 
-    def _hear(self, uart: int, data: bytes) -> None:
+    def _received_by_parts(self, uart: int, data: bytes) -> None:
         for part in self._parts:
             if isinstance(part, UartPart) and part.places[0] == uart:
                 part.time = self._cycle / CLOCK
@@ -368,6 +368,6 @@ class Arduino(ArduinoPorts):
                 box.put(time_ns, data)
                 box.flush()
                 self._sent += len(data)
-                self._hear(uart, data)
+                self._received_by_parts(uart, data)
                 for channel in self._monitors[uart].channels() if uart in self._monitors else ():
                     channel.send(data)

@@ -349,7 +349,7 @@ class PinPart(Part):
 class UartPart(Part):
     """A part at the line of a UART, written ``uart1``, besides what is on ``rx``.
 
-    It has what the board sends at the end of each step, and is heard from the next on.
+    It has what the board sends at the end of each step, and what it sends arrives from the next on.
     """
 
     def received(self, data: bytes) -> None:

@@ -36,7 +36,7 @@ class HcSr04(PinPart):
             return
         distance = self.inputs["distance"]
         speed = 331.3 + 0.606 * (self.inputs["temperature"] - 273.15)
-        heard = _NEAREST <= distance <= _FARTHEST
+        echoes = _NEAREST <= distance <= _FARTHEST
         begin = self.time + _BURST_S
-        self._busy = begin + (2.0 * distance / speed if heard else _NONE_S)
+        self._busy = begin + (2.0 * distance / speed if echoes else _NONE_S)
         self.drive(self.places[1], [(begin, 1), (self._busy, 0)])
