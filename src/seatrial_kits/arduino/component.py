@@ -158,6 +158,8 @@ class Arduino(ArduinoPorts):
             self._off = False
             if self.eeprom_after:
                 write_eeprom(self.eeprom_after, self._eeprom)
+            for part in self._parts:
+                part.end()
         for monitor in self._monitors.values():
             monitor.close()
         self._monitors = {}
@@ -281,6 +283,8 @@ class Arduino(ArduinoPorts):
                 self._measured[index] = values
                 try:
                     part.update(self._cycle / CLOCK, values, inputs)
+                except InputError:
+                    raise
                 except Exception as error:
                     raise part_failed(self.name, part, error) from error
 

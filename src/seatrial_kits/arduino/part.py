@@ -122,6 +122,9 @@ class Part:
     def measure(self) -> None:
         """Take in ``inputs``: called before the first step and when they have changed."""
 
+    def end(self) -> None:
+        """Keep what is to outlast the run: called at its end."""
+
     # ------------------------------------------------------------------ for the board
 
     def connect(self, index: int, records: Inputs) -> None:
@@ -311,6 +314,10 @@ class SpiPart(Part):
     """
 
     kind = _SPI
+
+    def __init__(self, places: tuple[int, ...], number: int = 1) -> None:
+        super().__init__(places, number)
+        self.drive(places[0], [(0.0, 1)])  # a pull-up holds it until the sketch does
 
     def selected(self) -> None:
         """Begin: the pin went low."""
