@@ -128,6 +128,7 @@ class Arduino(ArduinoPorts):
         self._cycle = end_ns * (CLOCK // 1_000_000) // 1000
         if self._board is not None:
             self._take(self._board.run(self._cycle, inputs))
+            self._send_packets()
 
     def outputs(self, t: float) -> None:
         """Publish pulses, levels and bytes."""
@@ -259,6 +260,11 @@ class Arduino(ArduinoPorts):
                     continue
                 cycle = max(0, time_ns - self._begun_ns) * (CLOCK // 1_000_000) // 1000
                 self._received += len(data)
+                if part := self._radio(uart):
+                    part.time = self._cycle / CLOCK
+                    part.arrived(max(cycle, self._cycle) / CLOCK, data)
+                    part.flush(inputs)
+                    continue
                 for byte in data:
                     inputs.put("U", uart, cycle, byte)
         for uart, monitor in self._monitors.items():
@@ -335,6 +341,20 @@ class Arduino(ArduinoPorts):
 
     def _channel(self, wire: Wire) -> int:
         return wire.place - self._board_mcu().first_analog
+
+    def _radio(self, uart: int) -> Part | None:
+        """Return the part whose packets are at the ports of a UART."""
+        return next((part for part in self._parts if part.line and part.line == uart), None)
+
+    def _send_packets(self) -> None:
+        for part in self._parts:
+            for time, data in part.packets:
+                if not self.cut[part.line]:
+                    box = Outbox(self._tx[part.line])
+                    box.put(self._begun_ns + round(time * NS), data)
+                    box.flush()
+                    self._sent += len(data)
+            part.packets.clear()
 
     def _received_by_parts(self, uart: int, data: bytes) -> None:
         for part in self._parts:

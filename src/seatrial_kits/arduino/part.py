@@ -110,6 +110,10 @@ class Part:
         self.places, self.number = places, number
         self.inputs: dict[str, Any] = {}
         self.pulses: dict[int, float] = {}
+        self.line = 0
+        """UART at whose ports its packets are, in the place of bytes; 0: none."""
+        self.packets: list[tuple[float, bytes]] = []
+        """Packets that it has sent, each with the time at which it is over."""
         self.time = 0.0
         """Seconds since the board has had power."""
         self._records = Inputs()
@@ -125,6 +129,9 @@ class Part:
     def end(self) -> None:
         """Keep what is to outlast the run: called at its end."""
 
+    def arrived(self, time: float, data: bytes) -> None:
+        """Take in a packet that came on its ``line``."""
+
     # ------------------------------------------------------------------ for the board
 
     def connect(self, index: int, records: Inputs) -> None:
@@ -136,14 +143,14 @@ class Part:
         """Measure, and put what has changed into ``records``."""
         self.time, self.inputs = time, inputs
         self.measure()
-        self._flush(records)
+        self.flush(records)
 
     def answer(self, call: int, value: int, cycle: int, sent: bytes) -> tuple[int, Inputs]:
         """Answer a call of the board; return its result, and what has changed."""
         self.time = cycle / CLOCK
         result = self._called(call, value, sent)
         records = Inputs()
-        self._flush(records)
+        self.flush(records)
         return result, records
 
     def _mask(self) -> int:
@@ -152,7 +159,8 @@ class Part:
     def _called(self, call: int, value: int, sent: bytes) -> int:
         return 1
 
-    def _flush(self, records: Inputs) -> None:
+    def flush(self, records: Inputs) -> None:
+        """Put what has changed into ``records``."""
         records.data += self._records.data
         self._records = Inputs()
 
@@ -245,7 +253,7 @@ class I2CRegisters(Part):
                     records.put("g", index, _ACCESS, at << 8 | access)
         self._next = [(pointer + 1) & 0xFF for pointer in range(256)]
         self._point()
-        self._flush(records)
+        self.flush(records)
 
     def _called(self, call: int, value: int, sent: bytes) -> int:
         at = value >> 8 if call == WRITE else value
@@ -265,8 +273,9 @@ class I2CRegisters(Part):
                 self._next[pointer] = following
                 self._records.put("g", self._index, _NEXT, pointer << 8 | following)
 
-    def _flush(self, records: Inputs) -> None:
-        super()._flush(records)
+    def flush(self, records: Inputs) -> None:
+        """Put what has changed into ``records``."""
+        super().flush(records)
         for begin, end in self._unsent:
             for at in range(begin, end, _RUN):
                 count = min(_RUN, end - at)

@@ -21,6 +21,7 @@ from .ms5837 import Ms5837
 from .pca9685 import Pca9685
 from .pixy import Pixy
 from .qmc5883l import Qmc5883l
+from .rfm95 import Rfm95
 from .sd_card import SdCard
 
 GROUP = "seatrial.arduino_parts"
@@ -41,6 +42,7 @@ SHELF: dict[str, type[Part]] = {
     "pca9685": Pca9685,
     "pixy": Pixy,
     "qmc5883l": Qmc5883l,
+    "rfm95": Rfm95,
     "sd_card": SdCard,
 }
 
