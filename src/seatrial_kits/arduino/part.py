@@ -170,6 +170,11 @@ class Part:
         for when, level in levels:
             self._records.put("d", pin, float(round(when * CLOCK)), level)
 
+    def pulse(self, pin: int, width: float, period: float) -> None:
+        """Have pulses of ``width`` at a pin, every ``period``, s, from the next on; 0: none."""
+        self._records.put("Q", pin, period)
+        self._records.put("R", pin, width)
+
     def _reply(self, data: bytes, beyond: int, deaf: bool = False) -> None:
         self._records.put("y", self._index, 0.0, int(deaf) << 8 | beyond)
         self._extend(data)

@@ -271,3 +271,22 @@ void loop() {}
     assert said[18:] == [0x40, 4]
     assert image.read_bytes()[1000 * 512 + 77] == 77
     assert image.stat().st_size == 32 << 20
+
+
+@both
+def test_a_wind_vane_by_its_pulses(tmp_path, backend):
+    """MA3, 12 bits: position = 4098 t_on / (t_on + t_off) - 1."""
+    source = """
+void setup() { Serial.begin(115200); pinMode(5, INPUT); }
+void loop() {
+  long high = pulseIn(5, HIGH), low = pulseIn(5, LOW);
+  Serial.println(high * 4098.0 / (high + low) - 1.0); delay(5);
+}
+"""
+    with Bench(write_sketch(tmp_path, source), backend, wires="5 ma3") as bench:
+        for blows_to, position in ((math.radians(-90.0), 1024), (math.radians(60.0), 2731)):
+            bench.one.set("wind_angle", blows_to)
+            bench.run(0.1)
+            read = [float(each) for each in bench.run(0.2).split()[1:-1]]
+            assert read == pytest.approx([position] * len(read), rel=0.01)
+            assert len(read) > 3

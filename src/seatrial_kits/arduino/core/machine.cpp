@@ -88,6 +88,7 @@ void take_input(const link_input *input)
     case IN_VOLTS: adc[index % 16] = input->number; break;
     case IN_LEVEL: put_outside(index % PINS, input->number != 0.0); break;
     case IN_FREQUENCY: wave_set(index, 0, input->number, now); break;
+    case IN_FRAME: wave_frame(index, input->number); break;
     case IN_PULSE: wave_set(index, 1, input->number, now); break;
     case IN_PART: part_add(input); watch_part(index); break;
     case IN_REGISTER: part_set(input); break;

@@ -42,7 +42,7 @@ _STRONG, _CLEAR = 107, 40
 
 
 class Rfm95(SpiPart):
-    """At the pins of selection and DIO0: packets are at ``tx`` and ``rx`` of the line of its number.
+    """At the pins of selection and DIO0: packets are ``tx`` and ``rx`` of the line of its number.
 
     A packet lasts as long as the data sheet says (4.1.1.6), and arrives if the radio receives then.
     Frequencies, sync words and the strength of signals are not compared.
@@ -81,7 +81,7 @@ class Rfm95(SpiPart):
         self._settle()
         at = self._next()
         if at != _FIFO:
-            return self._registers[at : at + 1]
+            return bytes([self._registers[at]])
         return bytes([self._buffer[self._advance()]])
 
     def released(self, sent: bytes) -> None:
@@ -127,7 +127,7 @@ class Rfm95(SpiPart):
         """Return how long a packet of ``length`` bytes lasts, s: preamble, header and payload."""
         registers = self._registers
         spreading = max(registers[_CONFIG_2] >> 4, 6)
-        symbol = 2**spreading / _BANDWIDTHS[min(registers[_CONFIG_1] >> 4, 9)]
+        symbol = float(1 << spreading) / _BANDWIDTHS[min(registers[_CONFIG_1] >> 4, 9)]
         implicit, check = registers[_CONFIG_1] & 1, registers[_CONFIG_2] >> 2 & 1
         slow = registers[_CONFIG_3] >> 3 & 1
         bits = 8 * length - 4 * spreading + 28 + 16 * check - 20 * implicit
