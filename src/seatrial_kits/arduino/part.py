@@ -78,6 +78,14 @@ def _format(form: str) -> tuple[int, Literal["little", "big"], bool, int, int]:
     return bits // 8, order, signed, low, high  # type: ignore[return-value]
 
 
+@cache
+def _packing(form: str, count: int) -> str:
+    """Return the format of so many numbers for `struct`."""
+    size, order, signed, _, _ = _format(form)
+    letter = {1: "b", 2: "h", 4: "i"}[size]
+    return f"{'<' if order == 'little' else '>'}{count}{letter if signed else letter.upper()}"
+
+
 def packed(form: str, value: float) -> bytes:
     """Return a number in a register's format, rounded, and at most what the format holds."""
     size, order, signed, low, high = _format(form)
@@ -230,9 +238,11 @@ class I2CRegisters(Part):
     def put_vector(self, first: str, values: Iterable[float]) -> None:
         """Set registers of the format of the first, one behind the other."""
         register = self.registers[first]
-        size, order, signed, low, high = _format(register.form)
-        whole = [round(min(max(low, value), high)) for value in values]
-        data = b"".join(each.to_bytes(size, order, signed=signed) for each in whole)
+        listed = list(values)
+        try:
+            data = struct.pack(_packing(register.form, len(listed)), *map(round, listed))
+        except (struct.error, ValueError, OverflowError):  # beyond what the format holds
+            data = b"".join(packed(register.form, value) for value in listed)
         self._store(register, data)
 
     def _put(self, register: Register, value: float) -> None:
