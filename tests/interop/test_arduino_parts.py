@@ -183,3 +183,75 @@ void loop() {
     assert read[:2] == [1, 0x28]
     assert read[2] == pytest.approx(750, abs=20)
     assert read[3] == -1.5625
+
+
+SD_CARD = """
+#include <SPI.h>
+#include <SD.h>
+void setup() {
+  Serial.begin(115200);
+  if (!SD.begin(53)) { Serial.println("-1"); return; }
+  File log = SD.open("trip.csv", FILE_WRITE);
+  for (int i = 0; i < 100; i++) { log.print(i); log.println(",12.5,knots"); }
+  log.close();
+  log = SD.open("trip.csv");
+  long sum = 0; while (log.available()) sum += log.read();
+  Serial.print(log.size()); Serial.print(' '); Serial.print(sum); Serial.print(' '); Serial.println(SD.exists("none.csv"));
+}
+void loop() {}
+"""
+
+
+def test_sd_card(tmp_path):
+    """A file that the library writes is on the image, and it goes on with it; SD.h is written in registers."""
+    backend = "simavr"
+    if not (FOLDER / "SD").is_dir():
+        pytest.skip(f"there is no {FOLDER / 'SD'}")
+    text = b"".join(b"%d,12.5,knots\r\n" % i for i in range(100))
+    sketch = write_sketch(tmp_path, SD_CARD)
+    image = tmp_path / "card.img"
+    values = {"libraries": str(FOLDER), "card_after": str(image)}
+    with Bench(sketch, backend, wires="53 sd_card", **values) as bench:
+        assert bench.run(2.0).split() == [b"%d" % len(text), b"%d" % sum(text), b"0"]
+    assert text[:400] in image.read_bytes()
+    with Bench(sketch, backend, wires="53 sd_card", card=str(image), **values) as bench:
+        assert bench.run(2.0).split()[0] == b"%d" % (2 * len(text))  # it appends
+    with Bench(sketch, backend, libraries=str(FOLDER)) as bench:
+        assert bench.run(3.0) == b"-1\r\n"  # no card
+
+
+LORA = """
+#include <SPI.h>
+#include <LoRa.h>
+void setup() {
+  Serial.begin(115200);
+  LoRa.setPins(53, 48, 2);
+  if (!LoRa.begin(868E6)) { Serial.println("none"); return; }
+  unsigned long begin = millis();
+  LoRa.beginPacket(); LoRa.print("hello "); LoRa.print(42); LoRa.endPacket();
+  Serial.println(millis() - begin);
+  if (DIO0) { LoRa.onReceive([](int size) { while (LoRa.available()) Serial.write(LoRa.read()); }); LoRa.receive(); }
+}
+void loop() {
+  if (DIO0) return;
+  if (LoRa.parsePacket()) { while (LoRa.available()) Serial.write(LoRa.read()); Serial.print(LoRa.packetRssi()); }
+}
+"""
+
+
+@both
+@pytest.mark.parametrize("by_interrupt", [0, 1])
+def test_rfm95(tmp_path, backend, by_interrupt):
+    """8 bytes at SF7, 125 kHz, 4/5, with 8 symbols of preamble: 36.1 ms (data sheet, 4.1.1.7)."""
+    if not (FOLDER / "arduino-LoRa").is_dir():
+        pytest.skip(f"there is no {FOLDER / 'arduino-LoRa'}")
+    sketch = write_sketch(tmp_path, LORA)
+    values = {"libraries": str(FOLDER), "flags": f"-DDIO0={by_interrupt}"}
+    with Bench(sketch, backend, wires="53,2 rfm95 3", **values) as bench:
+        took = int(bench.run(0.3))
+        assert took == pytest.approx(36, abs=6)
+        assert bench.sent[3] == b"hello 42"
+        bench.receive(3, b"to you")
+        assert bench.run(0.2).startswith(b"to you")
+    with Bench(sketch, backend, **values) as bench:
+        assert bench.run(0.3) == b"none\r\n"

@@ -183,8 +183,8 @@ def _opened(sketch: Sketch) -> str:
     """Return the UARTs that a sketch opens at rates written as numbers, as `uarts` has it."""
     found = {
         int(match[1] or 0): match[2]
-        for tab in sketch.tabs
-        for match in _SERIAL.finditer(read_source(tab))
+        for file in (*sketch.tabs, *sketch.others)
+        for match in _SERIAL.finditer(read_source(file))
         if match[2]
     }
     return "; ".join(f"{uart} {rate}" for uart, rate in sorted(found.items()))
@@ -221,7 +221,7 @@ def _lines(sketch: Sketch, values: dict[str, Any]) -> list[str]:
     """Return the lines that the sketch opens and the board or the profile has not."""
     wires = read_wires(values.get("wires", ""), MCUS[values["mcu"]])
     problems = []
-    for file in sketch.tabs:
+    for file in (*sketch.tabs, *sketch.others):
         for number, line in enumerate(read_source(file).splitlines(), 1):
             code, place = line.split("//")[0], f"{file}:{number}"
             for match in _SERIAL.finditer(code):

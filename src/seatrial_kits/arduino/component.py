@@ -23,10 +23,10 @@ from .mcus import CLOCK, MCUS, Mcu
 from .measuring import check_ports, measured
 from .part import Part, UartPart, part_failed
 from .parts.shelf import part_class
+from .platformio import project_mcu, project_of, read_project
 from .ports import ArduinoPorts
 from .pulses import Pulses
 from .real_board import RealBoard
-from .platformio import project_mcu, project_of, read_project
 from .sketch import Sketch, find_sketch
 from .uart_links import open_links
 from .wiring import STEPPERS, UARTS, Wire, read_uarts, read_wires
@@ -80,7 +80,7 @@ class Arduino(ArduinoPorts):
     discrete = True
     rolls_back = False
     transient = Component.transient | {
-        *("_board", "_eeprom", "_monitors", "_parts", "_measured", "_pulses", "_wires", "field_n")
+        *("_board", "_eeprom", "_monitors", "_parts", "_measured", "_pulses", "_wires", "_field_n")
     }
 
     def __init__(self, name: str = "component") -> None:
@@ -101,7 +101,7 @@ class Arduino(ArduinoPorts):
             there = {*range(mcu.uarts), *(w.number for w in self._wires if w.kind in _SOFT)}
             self._rates = {k: v for k, v in read_uarts(self.uarts).items() if k in there}
             self._eeprom = read_eeprom(self.eeprom, mcu)
-            self.field_n = self._field()
+            self._field_n = self._field()
             self._parts = self._made_parts()
             self._begin()
             self._monitors = open_links(self.monitors, "monitors")
@@ -128,6 +128,7 @@ class Arduino(ArduinoPorts):
         self._cycle = end_ns * (CLOCK // 1_000_000) // 1000
         if self._board is not None:
             self._take(self._board.run(self._cycle, inputs))
+            self._send_packets()
 
     def outputs(self, t: float) -> None:
         """Publish pulses, levels and bytes."""
@@ -158,6 +159,8 @@ class Arduino(ArduinoPorts):
             self._off = False
             if self.eeprom_after:
                 write_eeprom(self.eeprom_after, self._eeprom)
+            for part in self._parts:
+                part.end()
         for monitor in self._monitors.values():
             monitor.close()
         self._monitors = {}
@@ -257,6 +260,11 @@ class Arduino(ArduinoPorts):
                     continue
                 cycle = max(0, time_ns - self._begun_ns) * (CLOCK // 1_000_000) // 1000
                 self._received += len(data)
+                if part := self._radio(uart):
+                    part.time = self._cycle / CLOCK
+                    part.arrived(max(cycle, self._cycle) / CLOCK, data)
+                    part.flush(inputs)
+                    continue
                 for byte in data:
                     inputs.put("U", uart, cycle, byte)
         for uart, monitor in self._monitors.items():
@@ -276,11 +284,13 @@ class Arduino(ArduinoPorts):
     def _measure(self, inputs: Inputs) -> None:
         """Let each part take in what has changed, and say what it sends."""
         for index, part in enumerate(self._parts):
-            values = measured(self, part)
+            values = measured(self, part, self._field_n)
             if values != self._measured[index] or isinstance(part, UartPart):
                 self._measured[index] = values
                 try:
                     part.update(self._cycle / CLOCK, values, inputs)
+                except InputError:
+                    raise
                 except Exception as error:
                     raise part_failed(self.name, part, error) from error
 
@@ -332,7 +342,21 @@ class Arduino(ArduinoPorts):
     def _channel(self, wire: Wire) -> int:
         return wire.place - self._board_mcu().first_analog
 
-    def _hear(self, uart: int, data: bytes) -> None:
+    def _radio(self, uart: int) -> Part | None:
+        """Return the part whose packets are at the ports of a UART."""
+        return next((part for part in self._parts if part.line and part.line == uart), None)
+
+    def _send_packets(self) -> None:
+        for part in self._parts:
+            for time, data in part.packets:
+                if not self.cut[part.line]:
+                    box = Outbox(self._tx[part.line])
+                    box.put(self._begun_ns + round(time * NS), data)
+                    box.flush()
+                    self._sent += len(data)
+            part.packets.clear()
+
+    def _received_by_parts(self, uart: int, data: bytes) -> None:
         for part in self._parts:
             if isinstance(part, UartPart) and part.places[0] == uart:
                 part.time = self._cycle / CLOCK
@@ -368,6 +392,6 @@ class Arduino(ArduinoPorts):
                 box.put(time_ns, data)
                 box.flush()
                 self._sent += len(data)
-                self._hear(uart, data)
+                self._received_by_parts(uart, data)
                 for channel in self._monitors[uart].channels() if uart in self._monitors else ():
                     channel.send(data)

@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any
+from collections.abc import Sequence
+from typing import Any
 
 from seatrial.errors import InputError
 from seatrial.physics.craft.kinematics import to_body
 
 from .part import Part
-
-if TYPE_CHECKING:
-    from .component import Arduino
+from .ports import ArduinoPorts
 
 ATMOSPHERE = 101325.0
 GROUPS = ("angle", "distance", "temperature")
@@ -19,32 +18,35 @@ GROUPS = ("angle", "distance", "temperature")
 DERIVED = ("field", "declination", "pressure")
 
 
-def measured(board: Arduino, part: Part) -> dict[str, Any]:
-    """Return the inputs of a part, by name.
+def measured(board: ArduinoPorts, part: Part, field: Sequence[float]) -> dict[str, Any]:
+    """Return the inputs of a part, by name; ``field`` is the earth's, north-east-down, T.
 
     ``field`` is the magnetic one in body axes by ``attitude``, T; ``declination`` its
     angle east of north, rad; ``pressure`` that at ``depth`` under
     one atmosphere, Pa: p = p0 + rho g z.
     """
-    return {name: _value(board, name, part.number) for name in part.ports}
+    return {name: _value(board, name, part.number, field) for name in part.ports}
 
 
-def check_ports(board: Arduino, part: Part, written: str) -> None:
-    """Raise InputError for a port that a part names and the board has not, or a number too large."""
+def check_ports(board: ArduinoPorts, part: Part, written: str) -> None:
+    """Raise InputError for a port of a part that the board has not, or a number too large."""
     for name in part.ports:
         if name not in DERIVED and name not in board.ports:
-            raise InputError(f"wires: {written}: {type(part).__name__} names the port {name!r}: "
-                             f"{', '.join([*DERIVED, *GROUPS])} or another input is needed")  # fmt: skip
+            known = ", ".join([*DERIVED, *GROUPS])
+            raise InputError(
+                f"wires: {written}: {type(part).__name__} names the port {name!r}: {known} or "
+                "another input is needed"
+            )
         if name in GROUPS and not 1 <= part.number <= len(getattr(board, name)):
             most = len(getattr(board, name))
             raise InputError(f"wires: {written}: the number {part.number} is not in 1 to {most}")
 
 
-def _value(board: Arduino, name: str, number: int) -> Any:
+def _value(board: ArduinoPorts, name: str, number: int, field: Sequence[float]) -> Any:
     if name == "field":
-        return tuple(to_body(board.attitude, board.field_n))
+        return tuple(to_body(board.attitude, field))
     if name == "declination":
-        return math.atan2(board.field_n[1], board.field_n[0])
+        return math.atan2(field[1], field[0])
     if name == "pressure":
         return ATMOSPHERE + board.water_density * board.gravity * board.depth
     value = getattr(board, name)

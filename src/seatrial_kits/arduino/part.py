@@ -1,8 +1,8 @@
 """Parts at a board's buses and pins: what a file of one declares and does, for every back end.
 
-A part is a class of one of the kinds here. Its registers are data; `Part.measure` fills them from the
-ports that it names, at the beginning of each step in which these have changed. The board reads and
-writes registers by itself: the class is called for those only that are declared so.
+A part is a class of one of the kinds here. Its registers are data; `Part.measure` fills them from
+the ports that it names, at the beginning of each step in which these have changed. The board reads
+and writes registers by itself: the class is called for those only that are declared so.
 """
 
 from __future__ import annotations
@@ -51,8 +51,8 @@ class Register:
 
     ``form`` is its format: ``u8 s16be u16le`` and so on, of one byte and more. ``access`` is
     ``rw``, ``r`` (writing does nothing), ``acts`` (`I2CRegisters.written` follows a write) or
-    ``latches`` (`I2CRegisters.reading` precedes a read). What is written to one of ``rw`` stays at the
-    board: a part that needs it declares ``acts``.
+    ``latches`` (`I2CRegisters.reading` precedes a read). A value that a sketch writes to a register
+    of ``rw`` stays at the board: a part that needs the value declares ``acts``.
     """
 
     at: int
@@ -78,13 +78,21 @@ def _format(form: str) -> tuple[int, Literal["little", "big"], bool, int, int]:
     return bits // 8, order, signed, low, high  # type: ignore[return-value]
 
 
+@cache
+def _packing(form: str, count: int) -> str:
+    """Return the format of so many numbers for `struct`."""
+    size, order, signed, _, _ = _format(form)
+    letter = {1: "b", 2: "h", 4: "i"}[size]
+    return f"{'<' if order == 'little' else '>'}{count}{letter if signed else letter.upper()}"
+
+
 def packed(form: str, value: float) -> bytes:
     """Return a number in a register's format, rounded, and at most what the format holds."""
     size, order, signed, low, high = _format(form)
     return round(min(max(low, value), high)).to_bytes(size, order, signed=signed)
 
 
-def unpacked(form: str, data: bytes) -> int:
+def unpacked(form: str, data: bytes | bytearray) -> int:
     """Return the number in bytes of a register's format."""
     _, order, signed, _, _ = _format(form)
     return int.from_bytes(data, order, signed=signed)
@@ -94,9 +102,9 @@ class Part:
     """A part at ``places`` of a board: an I2C address, or pins.
 
     ``ports`` names the inputs of `Arduino` that it measures; they are in ``inputs``, SI units, each
-    a number or a tuple. Of ports in groups (``angle``, ``distance``, ``temperature``) it has the one of the
-    number behind its name in ``wires``. ``pulses`` has the widths of pulses that it makes, s, by number of the
-    output ``pulse``.
+    a number or a tuple. Of ports in groups (``angle``, ``distance``, ``temperature``) it has the
+    one of the number behind its name in ``wires``. ``pulses`` has the widths of pulses that it
+    makes, s, by number of the output ``pulse``.
     """
 
     ports: ClassVar[tuple[str, ...]] = ()
@@ -110,6 +118,10 @@ class Part:
         self.places, self.number = places, number
         self.inputs: dict[str, Any] = {}
         self.pulses: dict[int, float] = {}
+        self.line = 0
+        """UART at whose ports its packets are, in the place of bytes; 0: none."""
+        self.packets: list[tuple[float, bytes]] = []
+        """Packets that it has sent, each with the time at which it is over."""
         self.time = 0.0
         """Seconds since the board has had power."""
         self._records = Inputs()
@@ -122,6 +134,12 @@ class Part:
     def measure(self) -> None:
         """Take in ``inputs``: called before the first step and when they have changed."""
 
+    def end(self) -> None:
+        """Keep what is to outlast the run: called at its end."""
+
+    def arrived(self, time: float, data: bytes) -> None:
+        """Take in a packet that came on its ``line``."""
+
     # ------------------------------------------------------------------ for the board
 
     def connect(self, index: int, records: Inputs) -> None:
@@ -133,14 +151,14 @@ class Part:
         """Measure, and put what has changed into ``records``."""
         self.time, self.inputs = time, inputs
         self.measure()
-        self._flush(records)
+        self.flush(records)
 
     def answer(self, call: int, value: int, cycle: int, sent: bytes) -> tuple[int, Inputs]:
         """Answer a call of the board; return its result, and what has changed."""
         self.time = cycle / CLOCK
         result = self._called(call, value, sent)
         records = Inputs()
-        self._flush(records)
+        self.flush(records)
         return result, records
 
     def _mask(self) -> int:
@@ -149,15 +167,21 @@ class Part:
     def _called(self, call: int, value: int, sent: bytes) -> int:
         return 1
 
-    def _flush(self, records: Inputs) -> None:
+    def flush(self, records: Inputs) -> None:
+        """Put what has changed into ``records``."""
         records.data += self._records.data
         self._records = Inputs()
 
     def drive(self, pin: int, levels: Iterable[tuple[float, int]]) -> None:
-        """Drive a pin: (time, level) of each change, s; `NONE` leaves it. What was to come is dropped."""
+        """Drive a pin: (time, level) of each change, s; earlier plans are dropped. See `NONE`."""
         self._records.put("f", pin)
         for when, level in levels:
             self._records.put("d", pin, float(round(when * CLOCK)), level)
+
+    def pulse(self, pin: int, width: float, period: float) -> None:
+        """Have pulses of ``width`` at a pin, every ``period``, s, from the next on; 0: none."""
+        self._records.put("Q", pin, period)
+        self._records.put("R", pin, width)
 
     def _reply(self, data: bytes, beyond: int, deaf: bool = False) -> None:
         self._records.put("y", self._index, 0.0, int(deaf) << 8 | beyond)
@@ -195,7 +219,7 @@ class I2CRegisters(Part):
         return pointer + 1
 
     def written(self, name: str, value: int) -> bool:
-        """Act on a value that was written to a register that acts; return whether it is acknowledged."""
+        """Act on a value written to a register that acts; return whether it is acknowledged."""
         return True
 
     def reading(self, name: str) -> None:
@@ -214,9 +238,11 @@ class I2CRegisters(Part):
     def put_vector(self, first: str, values: Iterable[float]) -> None:
         """Set registers of the format of the first, one behind the other."""
         register = self.registers[first]
-        size, order, signed, low, high = _format(register.form)
-        whole = [round(min(max(low, value), high)) for value in values]
-        data = b"".join(each.to_bytes(size, order, signed=signed) for each in whole)
+        listed = list(values)
+        try:
+            data = struct.pack(_packing(register.form, len(listed)), *map(round, listed))
+        except (struct.error, ValueError, OverflowError):  # beyond what the format holds
+            data = b"".join(packed(register.form, value) for value in listed)
         self._store(register, data)
 
     def _put(self, register: Register, value: float) -> None:
@@ -242,7 +268,7 @@ class I2CRegisters(Part):
                     records.put("g", index, _ACCESS, at << 8 | access)
         self._next = [(pointer + 1) & 0xFF for pointer in range(256)]
         self._point()
-        self._flush(records)
+        self.flush(records)
 
     def _called(self, call: int, value: int, sent: bytes) -> int:
         at = value >> 8 if call == WRITE else value
@@ -262,8 +288,9 @@ class I2CRegisters(Part):
                 self._next[pointer] = following
                 self._records.put("g", self._index, _NEXT, pointer << 8 | following)
 
-    def _flush(self, records: Inputs) -> None:
-        super()._flush(records)
+    def flush(self, records: Inputs) -> None:
+        """Put what has changed into ``records``."""
+        super().flush(records)
         for begin, end in self._unsent:
             for at in range(begin, end, _RUN):
                 count = min(_RUN, end - at)
@@ -288,7 +315,7 @@ class I2CStream(Part):
         return True
 
     def begun(self, left: int) -> None:
-        """Prepare a reply: it is addressed for reading; ``left`` bytes of the last have not been read."""
+        """Prepare a reply, for a reading begins; ``left`` bytes of the last are unread."""
 
     def reply(self, data: bytes, beyond: int = 0) -> None:
         """Let ``data`` be read next, then ``beyond`` for ever."""
@@ -311,6 +338,10 @@ class SpiPart(Part):
     """
 
     kind = _SPI
+
+    def __init__(self, places: tuple[int, ...], number: int = 1) -> None:
+        super().__init__(places, number)
+        self.drive(places[0], [(0.0, 1)])  # a pull-up holds it until the sketch does
 
     def selected(self) -> None:
         """Begin: the pin went low."""
@@ -349,7 +380,7 @@ class PinPart(Part):
 class UartPart(Part):
     """A part at the line of a UART, written ``uart1``, besides what is on ``rx``.
 
-    It has what the board sends at the end of each step, and is heard from the next on.
+    It has what the board sends at the end of each step, and what it sends arrives from the next on.
     """
 
     def received(self, data: bytes) -> None:

@@ -1,4 +1,4 @@
-"""Projects of PlatformIO: the board, flags and folders that an environment of platformio.ini names."""
+"""Projects of PlatformIO: board, flags and folders of an environment of platformio.ini."""
 
 from __future__ import annotations
 

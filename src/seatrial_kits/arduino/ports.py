@@ -53,6 +53,10 @@ class ArduinoPorts(Reachable, Component):
         "", "1", "bytes that the EEPROM begins with, a binary file; none: erased", role="file"
     )
     eeprom_after = Parameter("", "1", "binary file for what the EEPROM holds at the end")
+    card = Parameter(
+        "", "1", "image that an SD card begins with; none: an empty FAT16 of 32 MiB", role="file"
+    )
+    card_after = Parameter("", "1", "file for the image of the SD card at the end")
     uarts = Parameter("0 115200", "1", "UART BAUD of each line; with ;", check=read_uarts)
     wires = Parameter(
         "",

@@ -1,13 +1,15 @@
-"""The board that a sketch is for, by the headers, words and project files that are that board's alone."""
+"""The board that a sketch is for, by headers, words and project files of that board alone."""
 
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
+from itertools import islice
 from pathlib import Path
 
 from .libraries import included, read_source
 from .sketch import Sketch
-from .tokens import tokens
+from .tokens import Token, tokens
 
 _HEADERS = {
     "ESP32": (
@@ -88,8 +90,8 @@ def unconditional(source: str) -> str:
     The guard around a whole header is no condition.
     """
     lines, depth = source.split("\n"), 0
-    guard = bool(re.match(r"\s*(?:/\*.*?\*/\s*|//[^\n]*\s*)*#\s*ifndef\s+(\w+)\s*\n\s*#\s*define\s+\1\b",
-                          source, re.S))  # fmt: skip
+    begin = [token.text for token in islice(_code(source), 6)]
+    guard = begin[:2] == ["#", "ifndef"] and begin[3:5] == ["#", "define"]
     for number, line in enumerate(lines):
         directive = line.lstrip().lstrip("#").lstrip() if line.lstrip().startswith("#") else ""
         depth -= directive.startswith("endif")
@@ -97,6 +99,10 @@ def unconditional(source: str) -> str:
             lines[number] = ""
         depth += directive.startswith("if")
     return "\n".join(lines)
+
+
+def _code(source: str) -> Iterator[Token]:
+    return (token for token in tokens(source) if token.kind != "space")
 
 
 def _matching(table: dict[str, str], names: list[str]) -> dict[str, list[str]]:

@@ -58,7 +58,7 @@ def _number(draw: Random, kind: str) -> str:
 
 
 def _arithmetic(draw: Random) -> str:
-    """Each result is stored: between stores the host has more bits, as its limits say."""
+    """Products and sums are long, or stored at once: between stores the host has more bits."""
     lines = []
     for name in "abc":
         kind = draw.choice(list(_TYPES))
@@ -69,7 +69,7 @@ def _arithmetic(draw: Random) -> str:
         lines.append(
             draw.choice(
                 (
-                    f"  {to} = {one} {operation} {two};",
+                    f"  {to} = (long){one} {operation} {two};",
                     f"  {to} = {one} / (long)(({two} & 63) + 1);",
                     f"  {to} = {one} % (long)(({two} & 63) + 1);",
                     f"  {to} = {one} >> {draw.randint(0, 7)};",

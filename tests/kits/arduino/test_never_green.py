@@ -1,4 +1,4 @@
-"""What a board or its build would refuse is refused: by `seatrial sketch check`, and in the run."""
+"""Refusals of `seatrial sketch check` and of runs: all that a board or its build would refuse."""
 
 import pytest
 

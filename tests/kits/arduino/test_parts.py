@@ -232,3 +232,61 @@ void loop() {}
         said = [int(each) for each in bench.run(0.1).split()]
     assert said[2:6] == [1, 128, 1, 128]  # its pointer comes round
     assert said[8] << 8 | said[9] == (384 - 256) * 4
+
+
+@both
+def test_a_card_by_its_commands(tmp_path, backend):
+    """SD Physical Layer 6.00, 7.3: reset, interface, initialising, reading the boot sector, writing a sector."""
+    source = """
+#include <SPI.h>
+byte answer(byte at) { byte x = 255; for (int i = 0; i < 20 && x == 255; i++) x = SPI.transfer(255); return x; }
+byte command(byte number, uint32_t argument) {
+  SPI.transfer(0x40 | number);
+  for (int shift = 24; shift >= 0; shift -= 8) SPI.transfer(argument >> shift);
+  SPI.transfer(0x95); return answer(0);
+}
+void say(int x) { Serial.print(x); Serial.print(' '); }
+void setup() {
+  Serial.begin(115200); pinMode(53, OUTPUT); SPI.begin(); digitalWrite(53, LOW);
+  say(command(0, 0)); say(command(8, 0x1AA)); for (int i = 0; i < 4; i++) say(SPI.transfer(255));
+  for (int i = 0; i < 3; i++) { command(55, 0); say(command(41, 0x40000000UL)); }
+  say(command(17, 0)); say(answer(0)); long sum = 0;
+  for (int i = 0; i < 510; i++) SPI.transfer(255);
+  say(SPI.transfer(255)); say(SPI.transfer(255)); SPI.transfer(255); SPI.transfer(255);
+  say(command(24, 1000)); SPI.transfer(0xFE); for (int i = 0; i < 514; i++) SPI.transfer(i); say(SPI.transfer(255) & 31);
+  while (SPI.transfer(255) != 255) {}
+  say(command(17, 1000)); say(answer(0)); for (int i = 0; i < 514; i++) { byte x = SPI.transfer(255); if (i == 77) say(x); }
+  say(command(17, 4000000000UL)); say(command(63, 0)); digitalWrite(53, HIGH);
+}
+void loop() {}
+"""
+    image = tmp_path / "card.img"
+    sketch = write_sketch(tmp_path, source)
+    with Bench(sketch, backend, wires="53 sd_card", card_after=str(image)) as bench:
+        said = [int(each) for each in bench.run(0.3).split()]
+    assert said[:6] == [1, 1, 0, 0, 1, 0xAA]
+    assert said[6:9] == [1, 0, 0]
+    assert said[9:13] == [0, 0xFE, 0x55, 0xAA]
+    assert said[13:18] == [0, 5, 0, 0xFE, 77]
+    assert said[18:] == [0x40, 4]
+    assert image.read_bytes()[1000 * 512 + 77] == 77
+    assert image.stat().st_size == 32 << 20
+
+
+@both
+def test_a_wind_vane_by_its_pulses(tmp_path, backend):
+    """MA3, 12 bits: position = 4098 t_on / (t_on + t_off) - 1."""
+    source = """
+void setup() { Serial.begin(115200); pinMode(5, INPUT); }
+void loop() {
+  long high = pulseIn(5, HIGH), low = pulseIn(5, LOW);
+  Serial.println(high * 4098.0 / (high + low) - 1.0); delay(5);
+}
+"""
+    with Bench(write_sketch(tmp_path, source), backend, wires="5 ma3") as bench:
+        for blows_to, position in ((math.radians(-90.0), 1024), (math.radians(60.0), 2731)):
+            bench.one.set("wind_angle", blows_to)
+            bench.run(0.1)
+            read = [float(each) for each in bench.run(0.2).split()[1:-1]]
+            assert read == pytest.approx([position] * len(read), rel=0.01)
+            assert len(read) > 3

@@ -120,6 +120,7 @@ static void take_input(const link_input *input)
     case IN_TX_PIN: line_from_pin(&lines[index % UARTS], (uint8_t)input->value); break;
     case IN_VOLTS: adc_put(index, input->number); break;
     case IN_LEVEL: pin_put(index, input->number != 0.0); break;
+    case IN_FRAME: wave_frame(index, input->number); break;
     case IN_FREQUENCY:
     case IN_PULSE:
         wave_set(index, input->kind == IN_PULSE, input->number, ticks());

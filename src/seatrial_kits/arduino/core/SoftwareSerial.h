@@ -29,7 +29,7 @@ public:
 
 private:
     static SoftwareSerial *listener_;
-    void hear(bool on);
+    void receive(bool on);
     uint8_t rx_, tx_;
     int to_ = -1, from_ = -1; /* the lines at its pins */
     uint32_t byte_us_ = 0;

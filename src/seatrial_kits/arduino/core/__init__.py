@@ -21,6 +21,7 @@ DATA_FILES = (
     "pins.h",
     "pins_arduino.h",
     "reset.h",
+    "servos.h",
     "sketch.h",
     "texts.cpp",
     "tones.h",

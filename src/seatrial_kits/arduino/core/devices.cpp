@@ -53,7 +53,7 @@ bool SoftwareSerial::listen()
     if (listener_)
         listener_->stopListening();
     listener_ = this;
-    hear(true);
+    receive(true);
     return true;
 }
 
@@ -62,11 +62,11 @@ bool SoftwareSerial::stopListening()
     if (listener_ != this)
         return false;
     listener_ = nullptr;
-    hear(false);
+    receive(false);
     return true;
 }
 
-void SoftwareSerial::hear(bool on) { if (to_ >= 0) machine::listen((uint8_t)to_, on); }
+void SoftwareSerial::receive(bool on) { if (to_ >= 0) machine::listen((uint8_t)to_, on); }
 bool SoftwareSerial::overflow() { return to_ >= 0 && machine::overflowed((uint8_t)to_); }
 int16_t SoftwareSerial::available() { charge(24); return isListening() && to_ >= 0 ? (int16_t)machine::received((uint8_t)to_) : (int16_t)0; }
 int16_t SoftwareSerial::read() { charge(30); return isListening() && to_ >= 0 ? (int16_t)machine::take((uint8_t)to_, false) : (int16_t)-1; }
@@ -79,14 +79,14 @@ size_t SoftwareSerial::write(uint8_t data)
         return 0;
     bool was = interrupts_enabled();
     noInterrupts();
-    hear(false);
+    receive(false);
     if (from_ >= 0) {
         machine::send((uint8_t)from_, data);
         machine::drain((uint8_t)from_);
     } else {
         delayMicroseconds(byte_us_);
     }
-    hear(isListening());
+    receive(isListening());
     if (was)
         interrupts();
     return 1;

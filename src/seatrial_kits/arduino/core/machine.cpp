@@ -45,13 +45,6 @@ uint64_t target, next_due = NEVER; /* nothing happens before main(): constructor
 uint64_t last_call, patience;
 char *stack;
 
-struct Servo {
-    int pin = -1;
-    double us = 1500.0;
-} servos[SERVOS];
-int servo_count, servo_turn = -1;
-uint64_t servo_next = NEVER, frame_start;
-
 struct Interrupt {
     void (*handler)();
     int mode;
@@ -65,6 +58,7 @@ link_input configured[CONFIGURED]; /* lines: the same after a reset */
 int configured_count;
 
 #include "pins.h"
+#include "servos.h"
 #include "tones.h"
 
 void configure(const link_input *input)
@@ -94,6 +88,7 @@ void take_input(const link_input *input)
     case IN_VOLTS: adc[index % 16] = input->number; break;
     case IN_LEVEL: put_outside(index % PINS, input->number != 0.0); break;
     case IN_FREQUENCY: wave_set(index, 0, input->number, now); break;
+    case IN_FRAME: wave_frame(index, input->number); break;
     case IN_PULSE: wave_set(index, 1, input->number, now); break;
     case IN_PART: part_add(input); watch_part(index); break;
     case IN_REGISTER: part_set(input); break;
@@ -103,23 +98,6 @@ void take_input(const link_input *input)
     case IN_FORGET: drive_forget(index % PINS); break;
     case IN_WATCH: pins[index % PINS].watched = true; break;
     }
-}
-
-void turn_servos()
-{
-    if (servo_turn >= 0 && servos[servo_turn].pin >= 0)
-        put_output((uint8_t)servos[servo_turn].pin, false);
-    if (++servo_turn == servo_count) {
-        uint64_t following = frame_start + FRAME;
-        servo_turn = -1;
-        servo_next = following > now ? following : now + 64;
-        return;
-    }
-    if (servo_turn == 0)
-        frame_start = now;
-    if (servos[servo_turn].pin >= 0)
-        put_output((uint8_t)servos[servo_turn].pin, true);
-    servo_next = now + (uint64_t)lround(servos[servo_turn].us * 16.0);
 }
 
 #include "reset.h"
@@ -323,22 +301,6 @@ void hush(uint8_t pin)
     if (tone_pin == pin)
         end_tone();
     drive(pin, false);
-    next_due = first(false);
-}
-
-int new_servo() { return servo_count < SERVOS ? servo_count++ : -1; }
-
-void set_servo(int servo, int pin, double us)
-{
-    if (servo < 0)
-        return;
-    if (pin >= 0)
-        need_pin((uint8_t)pin);
-    if (pin != servos[servo].pin && servos[servo].pin >= 0)
-        put_output((uint8_t)servos[servo].pin, false);
-    servos[servo] = {pin, us};
-    if (servo_next == NEVER && pin >= 0)
-        servo_next = now + 64;
     next_due = first(false);
 }
 

@@ -14,7 +14,7 @@ _ROUND = {0x0D: 0x0C, 0x0F: 0x0E, 0x1C: 0x1B}
 
 
 class As5600(I2CRegisters):
-    """An ``angle`` of the board, rad, in 4096 counts a turn; ANGLE is that of its programmed range."""
+    """An ``angle``, rad, in 4096 counts a turn; ANGLE has the range that is programmed."""
 
     ports = ("angle",)
     registers: ClassVar = {

@@ -27,8 +27,9 @@ class Bno055(I2CRegisters):
     """Specific force, field and angular velocity, body axes, and the attitude fused of them.
 
     Euler angles: heading clockwise from magnetic north, roll and pitch as ``attitude`` has them;
-    the quaternion (w first) turns body axes to north-east-down of it. Gravity is the specific force at rest, and
-    linear acceleration the rest of it. Units by UNIT_SEL. It calibrates at once, and needs 0.65 s after a reset.
+    the quaternion (w first) turns body axes to north-east-down of it. Gravity is the specific force
+    at rest, and linear acceleration the rest of it. Units by UNIT_SEL. It calibrates at once, and
+    needs 0.65 s after a reset.
     """
 
     ports = ("accelerometer", "gyro", "field", "attitude", "declination", "temperature")

@@ -13,7 +13,7 @@ _VECTORS = {"MAG": 0x06, "ACC": 0x0C, "GYR": 0x12}
 
 
 class Cmps12(I2CRegisters):
-    """Bearing from magnetic north, pitch and roll, and raw field, specific force and angular velocity."""
+    """Bearing from magnetic north, pitch, roll, and raw field, specific force and rates of turn."""
 
     ports = ("attitude", "declination", "field", "accelerometer", "gyro", "temperature")
     registers: ClassVar = {
@@ -44,7 +44,7 @@ class Cmps12(I2CRegisters):
         self.put("PITCH_180", theta)
         self.put("ROLL", min(max(phi, -90.0), 90.0))
         self.put("TEMP", self.inputs["temperature"] - 273.15)
-        # Counts of its BNO055: 16 a microtesla, 100 a m/s2 as it is set there by a g of 981, 16 a deg/s.
+        # Counts of its BNO055: 16 per microtesla, 981 per g, 16 per deg/s.
         for name, port, scale in (
             ("MAG", "field", 1.6e7),
             ("ACC", "accelerometer", 981.0 / STANDARD_GRAVITY),

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from ..part import PinPart
 
 _RESET_S, _SAMPLE_S, _HOLD_S = 400e-6, 25e-6, 30e-6
-"""Low for so long is a reset; of a slot, a zero that is written; that a zero is held which is read."""
+"""Low time of a reset; low time of a slot from which on a zero is written; hold of a zero read."""
 _PRESENCE_S = (30e-6, 150e-6)
 _CONVERSION_S = 0.75
 _FAMILY = 0x28
@@ -17,12 +17,18 @@ _AT_POWER_ON = 85.0
 
 
 class Ds18b20(PinPart):
-    """A ``temperature`` of the board, in 1/16 K at 12 bits: 0.75 s to convert, halved with each bit less.
+    """A ``temperature``, in 1/16 K at 12 bits: 0.75 s to convert, halved with each bit less.
 
     Its serial number is the number in ``wires``; powered from outside.
     """
 
     ports = ("temperature",)
+
+    _in: list[bool]
+    _out: list[bool]
+    _search: int
+    """Which bit of its number a search is at; -1: none goes on."""
+    _then: Callable[[int], None] | None
 
     def reset(self) -> None:
         """Begin with 85 deg C, as it has without a conversion."""

@@ -15,7 +15,8 @@ _NEAREST, _FARTHEST = 0.02, 4.0
 class HcSr04(PinPart):
     """At the pins of trigger and echo: a ``distance`` of the board, m, as the width of the echo.
 
-    width = 2 d / c, with c = 331.3 + 0.606 t, t in deg C of a ``temperature``. Nothing between 2 cm and 4 m: 38 ms.
+    width = 2 d / c, with c = 331.3 + 0.606 t, t in deg C of a ``temperature``. Nothing between 2 cm
+    and 4 m: 38 ms.
     """
 
     ports = ("distance", "temperature")
@@ -35,7 +36,7 @@ class HcSr04(PinPart):
             return
         distance = self.inputs["distance"]
         speed = 331.3 + 0.606 * (self.inputs["temperature"] - 273.15)
-        heard = _NEAREST <= distance <= _FARTHEST
+        echoes = _NEAREST <= distance <= _FARTHEST
         begin = self.time + _BURST_S
-        self._busy = begin + (2.0 * distance / speed if heard else _NONE_S)
+        self._busy = begin + (2.0 * distance / speed if echoes else _NONE_S)
         self.drive(self.places[1], [(begin, 1), (self._busy, 0)])

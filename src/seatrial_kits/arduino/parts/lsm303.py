@@ -57,7 +57,7 @@ _ACROSS = (980, 980, 760, 600, 400, 355, 295, 205)
 
 
 class Lsm303Magnetometer(Hmc5883l):
-    """The magnetic field, body axes, T: registers as of an HMC5883L, other counts; asleep at first."""
+    """The magnetic field, body axes, T: an HMC5883L with other counts, asleep at first."""
 
     counts: ClassVar = {"X": _IN_PLANE, "Y": _IN_PLANE, "Z": _ACROSS}
     registers: ClassVar = {

@@ -13,7 +13,7 @@ _SLEEP = 0x40
 
 
 class Mpu6050(I2CRegisters):
-    """Angular velocity and specific force, body axes, in ranges by 0x1B and 0x1C; asleep at power-on.
+    """Angular velocity and specific force, body axes, in ranges by 0x1B and 0x1C; asleep at first.
 
     131 counts per deg/s and 16384 per g in the smallest ranges, halved with each; 340 per K from
     36.53 deg C on.
@@ -34,18 +34,24 @@ class Mpu6050(I2CRegisters):
         "WHO_AM_I": Register(0x75, 0x68),
     }
 
+    def reset(self) -> None:
+        """Begin asleep, in the smallest ranges."""
+        self.written("", 0)
+
     def written(self, name: str, value: int) -> bool:
         """Measure in the range that is set now, or awake."""
+        self._asleep = bool(self.get("PWR_MGMT_1") & _SLEEP)
+        per_g = 16384.0 / (1 << (self.get("ACCEL_CONFIG") >> 3 & 3))
+        self._per_force = per_g / STANDARD_GRAVITY
+        self._per_rate = math.degrees(131.0 / (1 << (self.get("GYRO_CONFIG") >> 3 & 3)))
         self.measure()
         return True
 
     def measure(self) -> None:
         """Fill the registers of data, unless asleep."""
-        if self.get("PWR_MGMT_1") & _SLEEP:
+        if self._asleep:
             return
-        per_g = 16384.0 / (1 << (self.get("ACCEL_CONFIG") >> 3 & 3))
-        per_dps = 131.0 / (1 << (self.get("GYRO_CONFIG") >> 3 & 3))
-        force = [each / STANDARD_GRAVITY * per_g for each in self.inputs["accelerometer"]]
-        rate = [math.degrees(each) * per_dps for each in self.inputs["gyro"]]
+        force = [each * self._per_force for each in self.inputs["accelerometer"]]
+        rate = [each * self._per_rate for each in self.inputs["gyro"]]
         temperature = (self.inputs["water_temperature"] - 273.15 - 36.53) * 340.0
         self.put_vector("ACCEL_X", [*force, temperature, *rate])

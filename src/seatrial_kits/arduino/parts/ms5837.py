@@ -10,7 +10,7 @@ _PROM = (0, 34982, 36352, 20328, 22354, 26646, 26146, 0)
 
 
 class Ms5837(I2CStream):
-    """Absolute pressure and temperature: counts that its compensation to second order turns into them."""
+    """Absolute pressure and temperature: counts, compensated by the driver to second order."""
 
     ports = ("pressure", "water_temperature")
 

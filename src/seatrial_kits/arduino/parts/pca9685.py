@@ -15,7 +15,7 @@ _ALL = CHANNELS
 
 
 class Pca9685(I2CRegisters):
-    """Channel k gives the output ``pulse`` of the number in ``wires`` and k: 0 while off, asleep or always on."""
+    """Channel k is the ``pulse`` of the number in ``wires`` + k: 0 while off, or on for ever."""
 
     registers: ClassVar = {
         "MODE1": Register(0x00, 0x11, access="acts"),
@@ -31,7 +31,7 @@ class Pca9685(I2CRegisters):
     }
 
     def advanced(self, pointer: int) -> int:
-        """Return the next pointer: it advances by a bit of MODE1, and comes round behind the channels."""
+        """Return the next pointer: it advances by a bit of MODE1; behind the channels is 0."""
         if not self.get("MODE1") & _ADVANCE:
             return pointer
         return 0 if pointer == 0x45 else pointer + 1

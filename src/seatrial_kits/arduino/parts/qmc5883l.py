@@ -12,7 +12,7 @@ _RESET = 0x80
 
 
 class Qmc5883l(I2CRegisters):
-    """The magnetic field, body axes, T, in ranges of 2 and 8 G; in standby until CONTROL_1 is written."""
+    """The magnetic field, body axes, T, in ranges of 2 and 8 G; in standby at first."""
 
     ports = ("field",)
     registers: ClassVar = {

@@ -16,11 +16,14 @@ from .ds18b20 import Ds18b20
 from .hcsr04 import HcSr04
 from .hmc5883l import Hmc5883l
 from .lsm303 import Lsm303Accelerometer, Lsm303Magnetometer
+from .ma3 import Ma3
 from .mpu6050 import Mpu6050
 from .ms5837 import Ms5837
 from .pca9685 import Pca9685
 from .pixy import Pixy
 from .qmc5883l import Qmc5883l
+from .rfm95 import Rfm95
+from .sd_card import SdCard
 
 GROUP = "seatrial.arduino_parts"
 """Entry-point group that packages add parts to."""
@@ -35,11 +38,14 @@ SHELF: dict[str, type[Part]] = {
     "hmc5883l": Hmc5883l,
     "lsm303_accelerometer": Lsm303Accelerometer,
     "lsm303_magnetometer": Lsm303Magnetometer,
+    "ma3": Ma3,
     "mpu6050": Mpu6050,
     "ms5837": Ms5837,
     "pca9685": Pca9685,
     "pixy": Pixy,
     "qmc5883l": Qmc5883l,
+    "rfm95": Rfm95,
+    "sd_card": SdCard,
 }
 
 

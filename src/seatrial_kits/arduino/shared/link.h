@@ -40,6 +40,7 @@ enum {
     IN_VOLTS = 'A',     /* at ADC channel `index` */
     IN_LEVEL = 'L',     /* at pin `index` */
     IN_FREQUENCY = 'F', /* of a square wave at pin `index`, Hz */
+    IN_FRAME = 'Q',     /* how long from one of these to the next, s; 20 ms if it is not given */
     IN_PULSE = 'R',     /* width of the servo pulses at pin `index`, s */
     IN_PART = 'I',      /* a part of kind `value` at address or pin `index`: see parts.h, as of the next three */
     IN_REGISTER = 'g',

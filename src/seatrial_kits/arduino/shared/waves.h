@@ -12,6 +12,7 @@
 typedef struct {
     uint8_t pin, level, pulse;
     double number; /* Hz of a square wave, or s of a pulse */
+    double frame;  /* s, from pulse to pulse */
     double edge;   /* cycles: kept as a fraction, so that rounding does not add up */
 } wave;
 
@@ -22,25 +23,39 @@ static double wave_length(const wave *one, double clock)
 {
     if (!one->pulse)
         return clock / one->number / 2.0;
-    return (one->level ? one->number : FRAME_S - one->number) * clock;
+    return (one->level ? one->number : one->frame - one->number) * clock;
+}
+
+/* The wave at a pin, which begins now if there is none; 0 if there are too many. */
+static wave *wave_at(uint8_t pin, int pulse)
+{
+    for (int each = 0; each < wave_count; each++)
+        if (waves[each].pin == pin)
+            return &waves[each];
+    if (wave_count == WAVES)
+        return 0;
+    wave *one = &waves[wave_count++];
+    one->pin = pin;
+    one->level = 0;
+    one->pulse = (uint8_t)pulse;
+    one->number = 0.0;
+    one->frame = FRAME_S;
+    return one;
+}
+
+static void wave_frame(uint8_t pin, double frame)
+{
+    wave *one = wave_at(pin, 1);
+    if (one)
+        one->frame = frame;
 }
 
 /* A wave's number has been set at cycle `now`; a change takes effect at the next edge. */
 static void wave_set(uint8_t pin, int pulse, double number, uint64_t now)
 {
-    wave *one = 0;
-    for (int each = 0; each < wave_count; each++)
-        if (waves[each].pin == pin)
-            one = &waves[each];
-    if (!one) {
-        if (wave_count == WAVES)
-            return;
-        one = &waves[wave_count++];
-        one->pin = pin;
-        one->level = 0;
-        one->pulse = (uint8_t)pulse;
-        one->number = 0.0;
-    }
+    wave *one = wave_at(pin, pulse);
+    if (!one)
+        return;
     if (one->number <= 0.0 && number > 0.0)
         one->edge = (double)now + 1.0;
     one->number = number;
