@@ -342,7 +342,7 @@ def test_bad_data_files_are_named(value: str, message: str, write, tmp_path: Pat
 )
 @pytest.mark.filterwarnings("ignore::DeprecationWarning")
 def test_modules_travel_by_the_paths_that_they_had(imports: str, write, tmp_path: Path) -> None:
-    text = f'''{imports}
+    text = f"""{imports}
 from seatrial.links.can.frame import Frame
 
 
@@ -351,7 +351,7 @@ class Boat(Component):
 
     def outputs(self, t):
         self.value = float(len(Frame(1, b"abc").data))
-'''
+"""
     path = build_fmu(source(write("boat.py", text), "Boat"), tmp_path / "boat.fmu")
     raw = Raw(path, tmp_path / "unpacked")
     slave = raw.start()
