@@ -148,8 +148,8 @@ class Arduino(ArduinoPorts):
             elif wire.kind == "output":
                 levels[wire.number - 1] = bool(self._pulses[wire.place].level)
         for part in self._parts:
-            for output, width in part.pulses.items():
-                widths[output - 1] = width
+            for output in part.pulses:
+                widths[output - 1] = part.pulses[output]
         self.pulse, self.duty, self.output = widths, shares, levels
 
     def close(self) -> None:
