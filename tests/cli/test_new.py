@@ -163,6 +163,7 @@ def test_its_course_is_passed(made, request):
     assert done.returncode == 0, done.stdout
 
 
+@pytest.mark.slow
 @every_made
 def test_it_waits_for_a_ground_station(made):
     links = ("--set", "autopilot.mavlink.links=", "--set", "stop=1 s")

@@ -308,6 +308,7 @@ def test_a_system_structure_with_ecco_is_read_and_written(tmp_path: Path) -> Non
     assert lengths[0] == lengths[1]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("algorithm", "left_out"), [("ecco", False), ("jacobi", True)])
 def test_what_libcosim_does_not_read_is_noted(
     algorithm: str, left_out: bool, direct: Bench

@@ -71,6 +71,7 @@ def off(name, orders, water, h):
 UNIT = st.floats(-1, 1)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", CRAFT)
 @settings(max_examples=3, deadline=None)
 @given(orders=st.lists(UNIT, min_size=6, max_size=6), water=st.tuples(UNIT, UNIT))

@@ -54,6 +54,7 @@ def motion_in_frequency(tables, i, j):
     return np.linalg.solve(impedance, tables.excitation[:, i, j])
 
 
+@pytest.mark.slow
 @pytest.mark.sampled(4)
 @pytest.mark.parametrize(
     ("omega", "degrees"), [(2.4, 180), (4.0, 180), (3.2, 135), (5.2, 90), (2.8, 300)]

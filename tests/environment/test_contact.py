@@ -45,6 +45,7 @@ def fall(mass, h, duration, *, height=0.0, w=0.0, u=0.0, gravity=G, tilt=0.0, **
     return rows, contact
 
 
+@pytest.mark.slow
 @pytest.mark.sampled(3)
 @pytest.mark.parametrize("h", [0.001, 0.005, 0.01, 0.02])
 def test_a_body_at_rest_stands_as_deep_as_weight_over_stiffness(h):
@@ -61,6 +62,7 @@ def test_restitution_is_that_of_the_law(h, tolerance):
     assert contact.get("impact_speed") == 1.0
 
 
+@pytest.mark.slow
 @pytest.mark.sampled(3)
 @pytest.mark.parametrize("h", [0.001, 0.005, 0.01])
 def test_a_bounce_loses_energy_wherever_in_a_step_it_begins(h):

@@ -282,6 +282,7 @@ def test_a_name_that_the_terminal_needs_is_refused() -> None:
 # ------------------------------------------------------------------ in other importers
 
 
+@pytest.mark.slow
 def test_a_node_and_a_bus_run_on_the_bus_of_another_importer(fmus, dbc, tmp_path: Path) -> None:
     """The first frame, asked for at 0, leaves the node at 10 ms, the bus two steps later.
 

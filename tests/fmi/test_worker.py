@@ -68,6 +68,7 @@ def until(condition: Callable[[], bool]) -> None:
     raise AssertionError("waited in vain")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("how", [crashing.FINE, crashing.HANG])
 def test_a_worker_ends_with_its_parent(how: int, crash_fmu) -> None:
     process, pid = parent(crash_fmu, how)

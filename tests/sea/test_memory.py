@@ -44,6 +44,7 @@ def test_it_is_near_the_panels(body, error):
             assert np.abs(found[:, n, n] - wanted[:, motion, motion]).max() < error * largest
 
 
+@pytest.mark.slow
 def test_it_says_what_it_misses_of_each_motion():
     w, added, damping, infinite = panels("barge_T020")
     for memory, group in zip(fitted("barge_T020"), GROUPS, strict=True):
@@ -69,6 +70,7 @@ def test_one_motion_that_no_memory_gives_is_enough_to_refuse_and_is_named():
     assert "surge 0%" in str(refused.value)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("body", ["barge_T020", "cat_13"])
 def test_it_takes_energy_at_every_frequency_and_from_every_motion(body):
     for memory in fitted(body):

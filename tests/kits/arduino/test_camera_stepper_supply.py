@@ -79,6 +79,7 @@ def test_a_camera_as_its_maker_reads_it(tmp_path, backend):
     assert said[2:] == [said[0], ""]  # a frame is read once, an empty one is silence
 
 
+@pytest.mark.slow
 @both
 def test_pulses_are_counted_with_their_direction(tmp_path, backend):
     wires = {"wires": "4 step 1; 5 direction 1; 6 step 2", "backend": backend}

@@ -22,6 +22,7 @@ def test_check_says_what_it_is_made_of(tmp_path):
         assert text in done.stdout
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("source", "expected"),
     [
@@ -39,6 +40,7 @@ def test_check_refuses(tmp_path, source, expected):
     assert expected in done.stderr
 
 
+@pytest.mark.slow
 def test_check_counts_registers_and_leaves_them_to_the_emulator(tmp_path):
     source = "void setup() {\n  DDRB = 1;\n  DDRB = 2; DDRB = 4;\n  cli();\n}\nvoid loop() {}\n"
     sketch = str(write_sketch(tmp_path, source))

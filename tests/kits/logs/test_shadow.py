@@ -127,6 +127,7 @@ def test_what_a_trial_sets_is_fed_by_the_log(write, tmp_path):
     )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("options", "said"),
     [

@@ -20,6 +20,7 @@ TUNE = '[ask.tune]\ncandidates = 40\ncases = 4\n[ask.tune.keys]\n"form.a" = ["0.
 VARY = '[ask.vary]\n"form.b" = { uniform = ["29 kg", "31 kg"] }\n'
 
 
+@pytest.mark.slow
 def test_a_known_optimum_is_found_and_its_trial_runs(asked, tmp_path):
     # y is the distance from (2 m, 30 kg): whatever b is, a = 2 m is the best.
     campaign = asked("ellipse", "form.y < 3 m", TUNE + VARY)
@@ -51,6 +52,7 @@ def test_present_values_are_those_of_the_campaign(asked, tmp_path, where):
     assert written["set"]["form.a"] == finding.values["tuned"]["form.a"] != "300 cm"
 
 
+@pytest.mark.slow
 def test_the_same_seed_tunes_to_the_same_bytes(asked, tmp_path):
     campaign = asked("ellipse", "form.y < 3 m", TUNE.replace("40", "12") + VARY)
     for jobs in (1, 2):
