@@ -1,5 +1,7 @@
 """Landings of the shipped rigs: on a deck at rest, in waves, with what goes wrong."""
 
+import math
+
 import numpy as np
 import pytest
 
@@ -29,15 +31,20 @@ def value(sim, name):
     return float(np.ravel(sim.get(name))[0])
 
 
+HARDEST = {"naive": 1.25 * 0.50, "relative": 1.25 * 0.43, "predictive": 1.25 * 0.68}
+"""Normal speed at the touch, m/s: the independent benchmark's 95th percentiles in the calmest sea
+(0.1 m, 3 m/s), of which a deck at rest must be within its 25 %."""
+
+
 @pytest.mark.slow
-@pytest.mark.parametrize("control", ["naive", "relative", "predictive"])
+@pytest.mark.parametrize("control", list(HARDEST))
 @pytest.mark.parametrize("drone", ["huauv", "x500"])
 def test_it_lands_on_a_deck_at_rest(control, drone):
     # A deck at rest has a period of 1 s.
     with flown(40.0, control=control, drone=drone) as sim:
         assert value(sim, "drone.landed") == 1.0
         assert value(sim, "drone.touch_error") < 0.10
-        assert value(sim, "drone.touch_speed") < 0.8
+        assert value(sim, "drone.touch_speed") < HARDEST[control]
         assert value(sim, "drone.mode") == 6.0
 
 
@@ -80,11 +87,14 @@ def test_it_takes_off_flies_out_and_comes_back():
         "drone.landing.starts_from": "deck",
         "drone.landing.waypoint": [6.0, 3.0],
     }
-    with flown(8.0, out, start=-0.45) as sim:
+    with flown(3.0, out, start=-0.45) as sim:
         assert value(sim, "drone.mode") == 2.0
-        assert value(sim, "drone.body.position.x") > 3.0
+        nearest = math.inf
         while sim.time < 60.0 and not value(sim, "drone.landed"):
-            sim.run(sim.time + 1.0)
+            sim.run(round(sim.time + 0.1, 9))
+            place = [value(sim, f"drone.body.position.{axis}") for axis in "xy"]
+            nearest = min(nearest, math.dist(place, (6.0, 3.0)))
+        assert nearest < 1.0
         assert value(sim, "drone.landed") == 1.0
 
 

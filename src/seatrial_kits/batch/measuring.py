@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import time
 from collections import Counter, OrderedDict
 from collections.abc import Mapping, Sequence
@@ -47,9 +48,9 @@ class _Program:
     values: Mapping[str, Any]
 
 
-_SEEN: Counter[tuple[Any, ...]] = Counter()
+_SEEN: Counter[str] = Counter()
 """How many trials there were, by what they share."""
-_PROGRAMS: OrderedDict[tuple[Any, ...], _Program | None] = OrderedDict()
+_PROGRAMS: OrderedDict[str, _Program | None] = OrderedDict()
 """By what trials share; None: they have no program."""
 
 
@@ -93,10 +94,11 @@ def _is_plain(trial: Trial) -> bool:
     file, limit = trial.file, trial.file.limit
     special = file.real_time or file.utc or trial.scenario or trial.scales or trial.isolated
     texts = any("text" in kinds for _, c in trial.criteria for kinds in c.kinds.values())
-    return not (special or texts or trial.start_ns or limit.call is not None)
+    limited = limit.is_of_run or limit.call is not None  # who dies of one says in which call
+    return not (special or texts or trial.start_ns or limited)
 
 
-def _parted(trial: Trial) -> tuple[tuple[Any, ...], dict[str, Any]]:
+def _parted(trial: Trial) -> tuple[str, dict[str, Any]]:
     """Return what cases with one program share, and the numbers that each may have of its own."""
     content = trial.file.model_dump(exclude={"seed", "title", "limit"}, exclude_none=True)
     values: dict[str, Any] = {}
@@ -113,7 +115,10 @@ def _parted(trial: Trial) -> tuple[tuple[Any, ...], dict[str, Any]]:
         else:
             rest.append((key, repr(written)))
     rig = trial.rig.read_from.path, repr(trial.rig_changes)
-    return (trial.read_from.path, rig, repr(content), tuple(rest)), values
+    shared = repr((trial.read_from.path, rig, content, rest))
+    return hashlib.sha256(
+        shared.encode()
+    ).hexdigest(), values  # short: there may be as many as cases
 
 
 def _is_number(written: Any) -> bool:
@@ -124,7 +129,7 @@ def _is_number(written: Any) -> bool:
     return isinstance(written, (int, float)) and not isinstance(written, bool)
 
 
-def _program(shared: tuple[Any, ...], values: Mapping[str, Any], trial: Trial) -> _Program | None:
+def _program(shared: str, values: Mapping[str, Any], trial: Trial) -> _Program | None:
     kept = _PROGRAMS.get(shared)
     if shared in _PROGRAMS:
         _PROGRAMS.move_to_end(shared)

@@ -139,7 +139,7 @@ class Copies:
         for reward, margins in zip(self._task.rewards, self._margins, strict=True):
             rewards += self._of(reward, margins, now, over)
         failed = np.fromiter(failures, dtype=np.int64)
-        rewards[failed] = np.nan_to_num(rewards[failed])
+        rewards[failed] = np.nan_to_num(rewards[failed], posinf=0.0, neginf=0.0)
         return Made(rewards, terminated, truncated, is_success, ended_by)
 
     def observation(self) -> NDArray[np.float32]:
