@@ -182,13 +182,14 @@ class Batch:
         """Return present values: outputs, inputs that nothing feeds, parameters, in their units.
 
         Shape (count,) of one scalar; (count, n) of a port with n elements, or of several names,
-        side by side. Numbers alone: true is 1.0. Raises InputError.
+        side by side. Numbers alone: true is 1.0; NaN is what a failed copy has no more. Raises
+        InputError.
         """
         import numpy as np
 
         self._refuse_closed()
         references = self._settings.read(names)
-        values = np.empty((self.count, len(references)))
+        values = np.full((self.count, len(references)), np.nan)
         self._library.batch_get(self._batch, _at(references), len(references), _at(values))
         is_scalar = len(names) == 1 and self._settings.is_scalar(names[0])
         return values[:, 0] if is_scalar else values
