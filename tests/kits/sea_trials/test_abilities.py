@@ -23,6 +23,7 @@ from seatrial_kits.sea_trials.abilities import reason_against
         ("remus100", "bollard-pull", ".*fins alone hold its pitch"),
         ("bluerov2", "vertical-zig-zag", "its pilot does not dive by pitch"),
         ("bluerov2", "station-keeping", None),
+        ("glider", "turning-circle", "its pilot takes no order of speed"),
     ],
 )
 def test_a_vehicle_does_what_it_can(vehicle, trial, reason):
