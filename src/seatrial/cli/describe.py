@@ -38,8 +38,7 @@ def describe(
     pattern: Match = "",
     every: Every = False,
     drawn: Annotated[
-        Path | None,
-        typer.Option("--diagram", metavar="FILE", help="Draw it into a file, as SVG."),
+        Path | None, typer.Option("--diagram", metavar="FILE", help="Draw it into a file, as SVG.")
     ] = None,
 ) -> None:
     """Show a rig's components, rigs inside it, every connection, and what is left open."""

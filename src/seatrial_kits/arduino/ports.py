@@ -125,11 +125,7 @@ class ArduinoPorts(Reachable, Component):
         optional=True,
     )
     cut = Input(
-        "1",
-        "whether each UART's line is cut, both ways",
-        type=bool,
-        axes=_UARTS,
-        optional=True,
+        "1", "whether each UART's line is cut, both ways", type=bool, axes=_UARTS, optional=True
     )
     wind_speed = Input("m/s", "speed of the wind at cups", optional=True)
     wind_angle = Input(

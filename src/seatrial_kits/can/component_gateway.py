@@ -7,15 +7,7 @@ from typing import Any, ClassVar
 
 from seatrial.errors import InputError
 from seatrial.links.endpoints.endpoint import report
-from seatrial.model.component import (
-    NS,
-    Component,
-    Input,
-    Output,
-    Parameter,
-    Reachable,
-    terminal,
-)
+from seatrial.model.component import NS, Component, Input, Output, Parameter, Reachable, terminal
 
 from .frame import Frame
 from .gateway import Gateway

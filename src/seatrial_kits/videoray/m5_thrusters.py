@@ -8,15 +8,7 @@ from typing import Any, ClassVar
 
 from seatrial.errors import InputError
 from seatrial.links.text import Inbox, Outbox
-from seatrial.model.component import (
-    NS,
-    Component,
-    Input,
-    Logging,
-    Output,
-    Parameter,
-    terminal,
-)
+from seatrial.model.component import NS, Component, Input, Logging, Output, Parameter, terminal
 
 from .frame import VRCSR, Frame, encode
 from .half_duplex import HalfDuplex

@@ -5,14 +5,7 @@ from __future__ import annotations
 import math
 from typing import ClassVar
 
-from seatrial.model.component import (
-    Component,
-    Input,
-    Logging,
-    Output,
-    Parameter,
-    terminal,
-)
+from seatrial.model.component import Component, Input, Logging, Output, Parameter, terminal
 from seatrial.model.unit_table import STANDARD_GRAVITY
 
 _XYZ = ("x", "y", "z")

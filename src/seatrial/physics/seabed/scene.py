@@ -47,11 +47,7 @@ class Scene:
         return min(found, key=lambda each: each.distance, default=None)
 
     def hits(
-        self,
-        origin: Sequence[float],
-        direction: Sequence[float],
-        reach: float,
-        surface: bool,
+        self, origin: Sequence[float], direction: Sequence[float], reach: float, surface: bool
     ) -> Iterator[Hit]:
         """Yield what a ray meets of each kind, as `ray` has it, in any order."""
         for shape in self.obstacles:

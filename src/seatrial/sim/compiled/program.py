@@ -237,12 +237,7 @@ class Program:
         self._ask(operation, node, slave, "DoStep", [])
 
     def _ask(
-        self,
-        operation: Operation,
-        node: Node,
-        slave: Slave,
-        function: str,
-        variables: list[Any],
+        self, operation: Operation, node: Node, slave: Slave, function: str, variables: list[Any]
     ) -> None:
         """Add an operation that calls a function of an FMU."""
         operation.function, operation.component = slave.address(function), slave.component
@@ -259,10 +254,7 @@ class Program:
     # ------------------------------------------------------------------ calls
 
     def _call(
-        self,
-        call: Callable[[int, int], None],
-        fetched: Sequence[int],
-        left: Sequence[Chunk] = (),
+        self, call: Callable[[int, int], None], fetched: Sequence[int], left: Sequence[Chunk] = ()
     ) -> None:
         """Add a call; those that follow each other are one operation."""
         if not (self.operations and self.operations[-1].kind == CALL):

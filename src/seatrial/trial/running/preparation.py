@@ -87,11 +87,7 @@ def prepare(trial: Trial, engine: Engine, hooks: Hooks) -> Prepared:
         hooks.building(what)
 
     system = assemble(
-        trial.rig,
-        engine,
-        variant=trial.file.variant,
-        seed=trial.file.seed,
-        progress=building,
+        trial.rig, engine, variant=trial.file.variant, seed=trial.file.seed, progress=building
     )
     try:
         trial = trial.dated(system)

@@ -110,11 +110,7 @@ class Supervisor:
         return measured
 
     def begin(
-        self,
-        what: Order,
-        number: int,
-        folder: Path | None = None,
-        changes: Changes | None = None,
+        self, what: Order, number: int, folder: Path | None = None, changes: Changes | None = None
     ) -> None:
         """Begin to check, measure or run a trial, or to write the report of its folder.
 

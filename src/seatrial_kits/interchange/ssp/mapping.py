@@ -35,10 +35,7 @@ def read_mapping(root: Any, notes: Notes) -> list[Entry]:
 
 def _entry(element: Any, notes: Notes) -> Entry:
     known(
-        element,
-        {"source", "target", "suppressUnitConversion"},
-        {*KINDS, "ssm:Annotations"},
-        notes,
+        element, {"source", "target", "suppressUnitConversion"}, {*KINDS, "ssm:Annotations"}, notes
     )
     return Entry(
         needed(element, "source"),

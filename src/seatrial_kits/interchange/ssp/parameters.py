@@ -93,11 +93,7 @@ def read_parameter_set(
 
 
 def _parameter(
-    element: Any,
-    units: Mapping[str, Unit],
-    enumerations: Enumerations,
-    notes: Notes,
-    prefix: str,
+    element: Any, units: Mapping[str, Unit], enumerations: Enumerations, notes: Notes, prefix: str
 ) -> Parameter:
     types = {f"ssv:{kind}" for kind in KINDS}
     dimension = f"{{{NAMESPACES['ssc']}}}Dimension"

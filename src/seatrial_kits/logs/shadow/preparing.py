@@ -189,11 +189,7 @@ def _fed(rig: Rig, traces: Traces, table: Path) -> Rig:
 
 
 def _started(
-    trial: Trial,
-    traces: Traces,
-    window: Window,
-    changes: Mapping[str, Any],
-    notes: list[str],
+    trial: Trial, traces: Traces, window: Window, changes: Mapping[str, Any], notes: list[str]
 ) -> Trial:
     """Return the trial whose craft starts as the log does, unless its start was set."""
     system: System = assemble(trial.rig, "direct", variant=trial.file.variant)

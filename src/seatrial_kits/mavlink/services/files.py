@@ -62,9 +62,7 @@ class FileService(Service):
     @property
     def receivers(self) -> Mapping[int, Receiver]:
         """Messages that it takes in."""
-        return {
-            mavlink.MAVLINK_MSG_ID_FILE_TRANSFER_PROTOCOL: self._take,
-        }
+        return {mavlink.MAVLINK_MSG_ID_FILE_TRANSFER_PROTOCOL: self._take}
 
     def _take(self, message: Message, sender: Sender, now: float) -> None:
         payload = bytes(message.payload)

@@ -94,11 +94,7 @@ class GuidedService(Service):
         }
 
     def _take(
-        self,
-        read: Callable[[Message], Target | None],
-        message: Message,
-        sender: Sender,
-        now: float,
+        self, read: Callable[[Message], Target | None], message: Message, sender: Sender, now: float
     ) -> None:
         if self.vehicle.mode != self.vehicle.dialect.mode("guided"):
             return

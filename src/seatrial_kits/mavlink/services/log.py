@@ -94,8 +94,7 @@ class LogService(Service):
                 data = file.read(wanted)
         block = list(data.ljust(BLOCK, b"\0"))
         self.transport.send(
-            link,
-            mavlink.MAVLink_log_data_message(self._number, download.offset, len(data), block),
+            link, mavlink.MAVLink_log_data_message(self._number, download.offset, len(data), block)
         )
         download.offset += len(data)
         all_sent = download.offset >= download.end and download.end < self._size

@@ -81,9 +81,7 @@ class ModeService(Service):
     @property
     def receivers(self) -> Mapping[int, Receiver]:
         """Messages that it takes in."""
-        return {
-            mavlink.MAVLINK_MSG_ID_SET_MODE: self._take_mode,
-        }
+        return {mavlink.MAVLINK_MSG_ID_SET_MODE: self._take_mode}
 
     def _take_mode(self, message: Message, sender: Sender, now: float) -> None:
         if message.base_mode & mavlink.MAV_MODE_FLAG_CUSTOM_MODE_ENABLED:

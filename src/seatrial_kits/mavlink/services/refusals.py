@@ -51,9 +51,7 @@ class RefusalService(Service):
     @property
     def receivers(self) -> Mapping[int, Receiver]:
         """Messages that it takes in."""
-        return {
-            mavlink.MAVLINK_MSG_ID_SETUP_SIGNING: self._refuse_key,
-        }
+        return {mavlink.MAVLINK_MSG_ID_SETUP_SIGNING: self._refuse_key}
 
     def _refuse_key(self, message: Message, sender: Sender, now: float) -> None:
         self.vehicle.report(WARNING, "No key is taken over a link: give it in signing_key_file")

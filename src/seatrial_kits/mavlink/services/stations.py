@@ -72,9 +72,7 @@ class StationService(Service):
     @property
     def receivers(self) -> Mapping[int, Receiver]:
         """Messages that it takes in."""
-        return {
-            mavlink.MAVLINK_MSG_ID_HEARTBEAT: self._note,
-        }
+        return {mavlink.MAVLINK_MSG_ID_HEARTBEAT: self._note}
 
     def check(self) -> str | None:
         """Return the reason against arming, None if there is none."""

@@ -119,9 +119,7 @@ class StreamService(Service):
     @property
     def receivers(self) -> Mapping[int, Receiver]:
         """Messages that it takes in."""
-        return {
-            mavlink.MAVLINK_MSG_ID_REQUEST_DATA_STREAM: self._change_group,
-        }
+        return {mavlink.MAVLINK_MSG_ID_REQUEST_DATA_STREAM: self._change_group}
 
     def _change_group(self, message: Message, sender: Sender, now: float) -> None:
         wanted = message.req_message_rate if message.start_stop else 0

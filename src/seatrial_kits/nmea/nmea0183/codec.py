@@ -12,12 +12,7 @@ from operator import xor
 from typing import Any
 
 from pynmeagps import NMEAMessage, NMEAReader
-from pynmeagps.exceptions import (
-    NMEAMessageError,
-    NMEAParseError,
-    NMEAStreamError,
-    NMEATypeError,
-)
+from pynmeagps.exceptions import NMEAMessageError, NMEAParseError, NMEAStreamError, NMEATypeError
 from pynmeagps.nmeatypes_core import GET
 from pynmeagps.nmeatypes_get import NMEA_PAYLOADS_GET
 

@@ -355,10 +355,7 @@ READERS: dict[str, Callable[[Any], Values]] = {
 }
 """By formatter."""
 
-LATE: dict[str, tuple[str, ...]] = {
-    "HDG": ("variation",),
-    "VHW": ("heading", "magnetic_heading"),
-}
+LATE: dict[str, tuple[str, ...]] = {"HDG": ("variation",), "VHW": ("heading", "magnetic_heading")}
 """Quantities that a sentence repeats of others, by formatter: used where nothing else has them."""
 
 

@@ -157,10 +157,7 @@ _DATA = {
             (
                 Field("instance", sense="0 for `e1`, and so on: one message each"),
                 Field(
-                    "speed",
-                    "engine_speed",
-                    "bus_engine_speed",
-                    "the magnitude: there is no sign",
+                    "speed", "engine_speed", "bus_engine_speed", "the magnitude: there is no sign"
                 ),
             ),
         ),

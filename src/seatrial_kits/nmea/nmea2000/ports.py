@@ -6,14 +6,7 @@ from typing import Any, ClassVar
 
 from seatrial.links.parameter_validation import start_us
 from seatrial.links.unconnected import NOT_CONNECTED
-from seatrial.model.component import (
-    Component,
-    Input,
-    Noise,
-    Output,
-    Parameter,
-    terminal,
-)
+from seatrial.model.component import Component, Input, Noise, Output, Parameter, terminal
 
 from ..received.memory import preferred_sources
 from ..received.outputs import ENGINES, QUANTITIES, received_outputs
@@ -94,10 +87,7 @@ class Nmea2000Ports(received_outputs("bus_"), Noise, Component):  # type: ignore
     )
 
     prefer = Parameter(
-        "",
-        "1",
-        "QUANTITY ADDRESS of sources to use, the best first; with ;",
-        check=check_preferred,
+        "", "1", "QUANTITY ADDRESS of sources to use, the best first; with ;", check=check_preferred
     )
 
     rx = Input("1", "operations from the bus", type=str, role="can")
