@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import ClassVar
+from typing import ClassVar, NamedTuple
 
 import numpy as np
 
@@ -27,7 +27,6 @@ from .orders import (
     Order,
     is_turned,
 )
-from .steadiness import halves
 from .turn_rate import HelmForRate
 
 _SLOWEST = 0.02
@@ -357,3 +356,22 @@ class Manoeuvre(HelmForRate, Sampled):
         means = halves(self._windows[name], self._samples)
         assert means is not None
         return means.second
+
+
+class Halves(NamedTuple):
+    """Means of a signal over the first and the second half of a window."""
+
+    first: float
+    second: float
+
+    def agree(self, share: float, least: float) -> bool:
+        """Return whether they differ by no more than a share of the second, or ``least``."""
+        return abs(self.second - self.first) <= max(share * abs(self.second), least)
+
+
+def halves(window: list[float], samples: int) -> Halves | None:
+    """Return the means over both halves of the latest samples, None of a window not yet full."""
+    half = max(1, samples // 2)
+    if len(window) < 2 * half:
+        return None
+    return Halves(sum(window[-2 * half : -half]) / half, sum(window[-half:]) / half)
