@@ -27,7 +27,3 @@ class Pgn:
     priority: int
     interval_s: float = 0.0
     fields: tuple[Field, ...] = ()
-
-
-SID = Field("sid", sense="counts instants, 0 to 252; equal for what was measured together")
-FROM_NORTH = "clockwise from north"
