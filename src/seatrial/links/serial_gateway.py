@@ -9,8 +9,7 @@ from ..model.component import Component, Input, Logging, Output, Parameter, Reac
 from .endpoints.budget import Budget
 from .endpoints.endpoint import Endpoint, report
 from .endpoints.url import check_urls, open_endpoints, other_end
-from .safe_state import HeldChannels
-from .safe_state_bytes import UNSET, check_safe_state, require_safe_state, safe_state_bytes
+from .safe_state import UNSET, HeldChannels, check_safe_state, require_safe_state, safe_state_bytes
 from .text import Inbox, Outbox
 
 

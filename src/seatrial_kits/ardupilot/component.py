@@ -20,11 +20,10 @@ from seatrial.links.vehicle_sensors import read_instruments
 from seatrial.links.watchdog import Watchdog
 from seatrial.model.component import Component
 
-from .earth import Earth
 from .lockstep import Lockstep
 from .packet import MOST_CHANNELS
 from .ports import LOOP_HZ, ArduPilotPorts
-from .reply import RANGES, blows_from, read_fields, reply
+from .reply import RANGES, Earth, blows_from, read_fields, reply
 from .simulated import Simulated, simulated, write_parameters
 
 BOOTED_S = 10.0

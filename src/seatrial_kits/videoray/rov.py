@@ -13,13 +13,12 @@ from seatrial.model.component import NS, Component
 from .auto_loop import AutoLoop
 from .drive import Drive, share_of_thrust
 from .frame import Frame, encode
-from .gains import GAINS
 from .half_duplex import HalfDuplex
 from .identity import make_identity
 from .node import RovNode
 from .parser import Parser
 from .power_manager import manage
-from .registers import BY_NAME, OFF, factory_memory, put, read_settings
+from .registers import BY_NAME, GAINS, OFF, factory_memory, put, read_settings
 from .rov_ports import Pro4RovPorts
 from .stream_file import FROM_DEVICE, TO_DEVICE, StreamLog
 

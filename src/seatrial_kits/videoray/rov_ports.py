@@ -17,8 +17,7 @@ from seatrial.model.component import (
 from seatrial.model.unit_table import STANDARD_GRAVITY
 
 from .drive import SLEW_UNITS, THRUSTERS
-from .gains import GAINS
-from .registers import check_settings
+from .registers import GAINS, check_settings
 
 _XYZ = ("x", "y", "z")
 

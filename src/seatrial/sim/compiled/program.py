@@ -19,7 +19,6 @@ from ..feedthrough import Feedthrough, Group
 from ..network import Network
 from ..node import Chunk, Node, Writes
 from .library import function_address
-from .marks import Marks
 from .structures import (
     ARRIVE,
     BOOLEAN,
@@ -31,6 +30,7 @@ from .structures import (
     STEP,
     STORE,
     WRITE,
+    Marks,
     Operation,
     Times,
 )

@@ -12,7 +12,7 @@ from ...plugins import service
 from ...sim.master import Master
 from ...sim.recorder import matching, output_names
 from ...system.assembly import assemble
-from ...system.forgotten import forgotten
+from ...system.fitted_parts import forgotten
 from ...system.system import Engine, System
 from ...system.unread import leave_out_unread
 from ..files.naming import by_path, named_components

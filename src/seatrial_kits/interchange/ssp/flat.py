@@ -13,7 +13,7 @@ from seatrial.fmi.components.source import table_source
 from seatrial.fmi.components.table_file import SUFFIXES
 from seatrial.fmi.files.options import FmuOptions, Interface
 from seatrial.fmi.loading.load import load_fmu
-from seatrial.system.packaged import SSP_FILE
+from seatrial.system.packages import SSP_FILE
 
 from .binding import Bound
 from .graph import Edge, Graph, Node, Origin, Path_

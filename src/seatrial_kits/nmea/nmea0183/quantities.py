@@ -12,7 +12,7 @@ from collections.abc import Callable
 from typing import Any
 
 from ..received.memory import Values
-from .fields import CELSIUS, FATHOM, FOOT, KNOT, MILE
+from .codec import CELSIUS, FATHOM, FOOT, KNOT, MILE
 
 _KILOMETRES_PER_HOUR = 1.0 / 3.6
 _SPEED_UNITS = {"N": KNOT, "K": _KILOMETRES_PER_HOUR, "M": 1.0, "S": 1609.344 / 3600.0}
