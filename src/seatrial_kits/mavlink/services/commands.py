@@ -16,8 +16,8 @@ from ..service import (
     WARNING,
     Command,
     Handler,
-    Receiver,
     Service,
+    on_message,
 )
 from ..transport import Sender, Transport
 from ..vehicle import Vehicle
@@ -49,17 +49,11 @@ class CommandService(Service):
         super().__init__(vehicle, transport)
         self._handlers = handlers
 
-    @property
-    def receivers(self) -> Mapping[int, Receiver]:
-        """Messages that it takes in."""
-        return {
-            mavlink.MAVLINK_MSG_ID_COMMAND_LONG: self._take_long,
-            mavlink.MAVLINK_MSG_ID_COMMAND_INT: self._take_int,
-        }
-
+    @on_message(mavlink.MAVLINK_MSG_ID_COMMAND_LONG)
     def _take_long(self, message: Message, sender: Sender, now: float) -> None:
         self._carry_out(_of_long(message), sender, now)
 
+    @on_message(mavlink.MAVLINK_MSG_ID_COMMAND_INT)
     def _take_int(self, message: Message, sender: Sender, now: float) -> None:
         self._carry_out(_of_int(message), sender, now)
 
@@ -124,11 +118,7 @@ class RefusalService(Service):
         absent = dict.fromkeys(_ABSENT, self._miss) if self.vehicle.dialect.is_ardupilot else {}
         return dict.fromkeys(_REASONS, self._refuse) | absent
 
-    @property
-    def receivers(self) -> Mapping[int, Receiver]:
-        """Messages that it takes in."""
-        return {mavlink.MAVLINK_MSG_ID_SETUP_SIGNING: self._refuse_key}
-
+    @on_message(mavlink.MAVLINK_MSG_ID_SETUP_SIGNING)
     def _refuse_key(self, message: Message, sender: Sender, now: float) -> None:
         self.vehicle.report(WARNING, "No key is taken over a link: give it in signing_key_file")
 

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import ClassVar
 
 from pymavlink.dialects.v20 import all as mavlink
 
 from ..codec import Message
 from ..scaling import microseconds
-from ..service import Builder, Service
+from ..service import Service, builds
 from ..transport import Transport
 from ..vehicle import Vehicle
 
@@ -45,14 +45,6 @@ class EstimatorTelemetry(Service):
         self._velocity, self._position = Innovation(2.0), Innovation(5.0)  # m/s, m
         self._height, self._heading = Innovation(2.0), Innovation(0.5, turns=True)  # m, rad
 
-    @property
-    def messages(self) -> Mapping[int, Builder]:
-        """Messages that it can build."""
-        return {
-            mavlink.MAVLINK_MSG_ID_EKF_STATUS_REPORT: self._report,
-            mavlink.MAVLINK_MSG_ID_ESTIMATOR_STATUS: self._status,
-        }
-
     def tick(self, now: float) -> None:
         """Take in the measurements."""
         e = self.vehicle.estimates
@@ -77,9 +69,11 @@ class EstimatorTelemetry(Service):
         flags |= _POSITION if e.position_valid else mavlink.EKF_CONST_POS_MODE
         return int(flags if "velocity" in e.begun else flags & ~_VELOCITY)
 
+    @builds(mavlink.MAVLINK_MSG_ID_EKF_STATUS_REPORT)
     def _report(self, now: float) -> list[Message]:
         return [mavlink.MAVLink_ekf_status_report_message(self._flags(), *self._ratios, 0.0)]
 
+    @builds(mavlink.MAVLINK_MSG_ID_ESTIMATOR_STATUS)
     def _status(self, now: float) -> list[Message]:
         if not self.vehicle.dialect.main_and_sub:
             return []
