@@ -124,11 +124,6 @@ def safe_state_bytes(text: str) -> bytes:
         raise InputError(f"safe_state: {text!r} is not bytes such as 'FAAF 0100'") from None
 
 
-def check_safe_state(text: str) -> None:
-    """Raise InputError for a text that is not bytes as hexadecimal numbers."""
-    safe_state_bytes(text)
-
-
 def require_safe_state(text: str, urls: str) -> None:
     """Raise InputError if one of ``urls`` reaches a device and nobody has written a safe state."""
     for url in urls.split() if text == UNSET else ():

@@ -6,7 +6,7 @@ import math
 from typing import ClassVar
 
 from seatrial.links.parameter_validation import start_us
-from seatrial.links.safe_state import UNSET, check_safe_state
+from seatrial.links.safe_state import UNSET, safe_state_bytes
 from seatrial.model.component import (
     Component,
     Input,
@@ -87,7 +87,7 @@ class ArduinoPorts(Reachable, Component):
         check=read_monitors,
     )
     safe_state = Parameter(
-        UNSET, "1", "board: safe-state bytes, hexadecimal; empty for none", check=check_safe_state
+        UNSET, "1", "board: safe-state bytes, hexadecimal; empty for none", check=safe_state_bytes
     )
     timeout = Parameter(
         2.0,

@@ -280,11 +280,6 @@ def read_settings(text: str) -> dict[str, int]:
     return found
 
 
-def check_settings(text: str) -> None:
-    """Raise InputError for a text that `read_settings` refuses."""
-    read_settings(text)
-
-
 GAINS: dict[str, dict[str, int]] = {
     "captured": {},
     "holding": {

@@ -17,7 +17,7 @@ from seatrial.model.component import (
 from seatrial.model.unit_table import STANDARD_GRAVITY
 
 from .drive import SLEW_UNITS, THRUSTERS
-from .registers import GAINS, check_settings
+from .registers import GAINS, read_settings
 
 _XYZ = ("x", "y", "z")
 
@@ -40,7 +40,7 @@ class Pro4RovPorts(Logging, Component):
     )
     gains = Parameter("captured", "1", "named set of gains and slew rates", choices=tuple(GAINS))
     registers = Parameter(
-        "", "1", "stored registers that differ: NAME VALUE; ...", check=check_settings
+        "", "1", "stored registers that differ: NAME VALUE; ...", check=read_settings
     )
     storing = Parameter(
         "at-once",

@@ -61,11 +61,6 @@ RECEIVED = (
 """Messages about the vessel that a node reads."""
 
 
-def check_sends(text: str) -> None:
-    """Raise InputError for a text that `sends` refuses."""
-    sends(text)
-
-
 def sends(text: str) -> list[int]:
     """Return the PGNs of ``sends``, separated by spaces.
 
@@ -79,11 +74,6 @@ def sends(text: str) -> list[int]:
             raise InputError(f"sends: {word} is there twice")
         found.append(int(word))
     return found
-
-
-def check_intervals(text: str) -> None:
-    """Raise InputError for a text that `intervals` refuses."""
-    intervals(text)
 
 
 def intervals(text: str) -> dict[int, float]:

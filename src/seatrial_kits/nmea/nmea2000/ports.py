@@ -10,8 +10,8 @@ from seatrial.model.component import Component, Input, Noise, Output, Parameter,
 
 from ..received.memory import preferred_sources
 from ..received.outputs import ENGINES, QUANTITIES, received_outputs
+from . import catalogue
 from .address_claim import HIGHEST
-from .catalogue import check_intervals, check_sends
 
 _NED = ("north", "east", "down")
 _EULER = ("phi", "theta", "psi")
@@ -35,12 +35,12 @@ def check_preferred(text: str) -> None:
 class Nmea2000Ports(received_outputs("bus_"), Noise, Component):  # type: ignore[misc]
     """Parameters, inputs and outputs of `Nmea2000`."""
 
-    sends = Parameter("", "1", "PGNs that it sends, separated by spaces", check=check_sends)
+    sends = Parameter("", "1", "PGNs that it sends, separated by spaces", check=catalogue.sends)
     intervals = Parameter(
         "",
         "1",
         "PGN SECONDS of intervals that are not the standard's; with ;",
-        check=check_intervals,
+        check=catalogue.intervals,
     )
     address = Parameter(35.0, "1", "address that it claims first", min=0.0, max=float(HIGHEST))
     arbitrary_address = Parameter(
