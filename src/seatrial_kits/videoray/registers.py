@@ -235,8 +235,6 @@ WRITABLE = bytes(
 """1 for each address below 0xF0 that a request may write."""
 STORED = tuple(a for r in REGISTERS if r.stored for a in range(r.address, r.address + r.size))
 """Addresses that outlive a reboot."""
-SELF_STORED = tuple(BY_NAME[name] for name in ("max_depth", "run_time"))
-"""Registers that the device keeps without a commit."""
 
 
 def factory_memory() -> bytearray:

@@ -5,8 +5,6 @@ from __future__ import annotations
 import ast
 import dataclasses
 import inspect
-import math
-import operator
 import re
 import types
 from collections.abc import Callable, Mapping, Sequence
@@ -19,7 +17,6 @@ from .text import tree_of
 from .values import NONE, NOTHING, Callee, Inputs, Value, computed, constant, joined, mixed
 
 _DEEPEST = 60
-_KEEPS_NOTHING = (math, operator)
 _OPAQUE = (eval, exec, locals, globals, compile, __import__)
 _SCALARS = (float, int, bool, str, bytes, complex, len, abs, round, any, all, repr, ord, chr)
 _COPIES = (tuple, list, set, frozenset, dict, range)

@@ -23,8 +23,6 @@ from ..scaling import (
 )
 from ..service import Service, builds
 
-_NO_QUATERNION = [math.nan, 0.0, 0.0, 0.0]
-
 
 class MotionTelemetry(Service):
     """ATTITUDE, ATTITUDE_QUATERNION, LOCAL_POSITION_NED, GLOBAL_POSITION_INT, VFR_HUD, ALTITUDE,
