@@ -6,9 +6,7 @@ import math
 from typing import ClassVar
 
 from seatrial.model.component import (
-    Component,
     Input,
-    Logging,
     Output,
     Parameter,
     Terminal,
@@ -17,12 +15,13 @@ from seatrial.model.component import (
 from seatrial.model.unit_table import STANDARD_GRAVITY
 
 from .drive import SLEW_UNITS, THRUSTERS
+from .half_duplex import LineEnd
 from .registers import GAINS, read_settings
 
 _XYZ = ("x", "y", "z")
 
 
-class Pro4RovPorts(Logging, Component):
+class Pro4RovPorts(LineEnd):
     """Parameters, inputs and outputs of `Pro4Rov`."""
 
     baud = Parameter(115_200.0, "1/s", "baud rate", min=300.0, max=1e7)
