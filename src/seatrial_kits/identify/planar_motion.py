@@ -21,7 +21,7 @@ class PlanarMotion(Plant):
         m22 v' =               - D_v(v) - m11 u r              D_i(x) = (d_i + q_i |x|) x
         m33 r' = arm (E1 s1 - E2 s2) - D_r(r) + (m11 - m22) u v
 
-    Source 000, eq. 5.18, with its missing lever arm and, of ours, the quadratic drag q that it
+    [Paulino2015], eq. 5.18, with its missing lever arm and, of ours, the quadratic drag q that it
     sets aside here. ``mass`` has the added mass, thruster 1 ahead turns to starboard. s is each
     thruster's share of its full thrust E: with ``lag`` "none" the command, with "thruster"
     T s' = command - s.

@@ -33,7 +33,7 @@ _ROUNDS = 3
 
 @dataclass(frozen=True)
 class PlanarKnown:
-    """What surge and yaw have shown: source 000, section 5.3, takes it from their own runs."""
+    """What surge and yaw have shown: [Paulino2015], section 5.3, takes it from their own runs."""
 
     mass: tuple[float, float]
     """m11 in kg and m33 in kg.m2, with added mass."""
@@ -133,7 +133,7 @@ def planar_simulated(log: PlanarLog, known: PlanarKnown, found: PlanarFit) -> Ve
 
 
 def as_the_source(log: PlanarLog, known: PlanarKnown) -> PlanarEstimate:
-    """Return what source 000, eqs 5.20 and 5.21, makes of a log, its signs corrected.
+    """Return what [Paulino2015], eqs 5.20 and 5.21, makes of a log, its signs corrected.
 
     Velocities by discrete integration of the accelerations, yaw rate and its change by
     differences of the heading; linear drag.
