@@ -2,7 +2,8 @@
 # docker run --rm -v "$PWD:/work" -w /work seatrial seatrial run TRIAL     with your own files
 FROM debian:bookworm-slim AS base
 RUN apt-get update && \
-    apt-get install -y --no-install-recommends ca-certificates make python3 python3-venv && \
+    apt-get install -y --no-install-recommends ca-certificates libglib2.0-0 libx11-6 libxext6 libxrender1 make \
+        python3 python3-venv && \
     rm -rf /var/lib/apt/lists/*
 
 # Compilers and tools of the tests, for the dev container.
