@@ -17,7 +17,7 @@ _LACKING = {
     STAYS: "its pilot keeps it under way: it does not turn or stay without speed",
     DIVES: "its pilot holds no depth",
     PITCHES: "its pilot does not dive by pitch",
-    MOORED: "its [mooring] has no line",
+    MOORED: "its [mooring] has no line, or fins alone hold its pitch, which need speed",
 }
 """Why a vehicle without an ability is not put through a manoeuvre."""
 
@@ -26,7 +26,8 @@ def reason_against(trial: Trial) -> str | None:
     """Return why the manoeuvre of a trial does not apply to its vehicle; None if it does.
 
     Guidance tells: whether speed orders go on from it, ``staying``, and ``depth_control``. A pilot
-    with ``depth-by-pitch`` pitches, and a line with a stiffness moors. Raises InputError for a rig
+    with ``depth-by-pitch`` pitches, and has no bollard pull: without speed its fins hold neither
+    pitch nor depth. A line with a stiffness moors. Raises InputError for a rig
     that does not go together.
     """
     choices = dict(trial.file.choices)
@@ -76,7 +77,8 @@ def abilities(system: System) -> frozenset[str]:
                 found.add(DIVES)
             if _value(part, "staying") == "rest":
                 found.add(STAYS)
-    return frozenset(found if STOPS in found else found - {STAYS, MOORED})
+    without = {STAYS, MOORED} if STOPS not in found else {MOORED} if PITCHES in found else set()
+    return frozenset(found - without)
 
 
 def _value(part: Part, name: str) -> object:

@@ -27,13 +27,15 @@ from .orders import (
     Order,
     is_turned,
 )
-from .steadiness import halves
+from .steadiness import halves, noise
 from .turn_rate import HelmForRate
 
 _SLOWEST = 0.02
 """m/s; a change of speed within which a craft is steady, whatever its speed."""
 _RATE = math.radians(0.02)
-"""rad/s; the same of the rate of turn."""
+"""rad/s; the most that a change of the rate of turn may be, if 2 % are less."""
+_RATE_LEAST = math.radians(0.0005)
+"""rad/s; the change within which a rate without noise is steady: a thousandth of a big ship's."""
 _HEADING = math.radians(1.0)
 """Change of the mean heading within which the approach is straight, rad."""
 _DEPTH = 0.05
@@ -93,12 +95,14 @@ class Manoeuvre(HelmForRate, Sampled):
                      of +-``heading_change``, five times
     ================ =====================================================================
 
-    Steady is a rate of turn whose means differ by 2 % or 0.02 deg/s, or a depth whose means do by
-    0.05 m; an order that waits for a steady rate ends after 20 windows at the latest. The last
-    order stays when the manoeuvre is ``done``. Orders are given at instants, up to one ``period``
-    after the heading is reached. Heading clockwise from north, rad; ``side`` 1 to starboard, -1 to
-    port. The speed along the bow is that over ground. ``power`` is that of up to eight propulsors,
-    ``line_force`` of the line at the bollard, {n}.
+    Steady is a rate of turn whose means differ by 2 %, by 0.0005 deg/s, or by what its noise
+    explains, up to 0.02 deg/s (`steadiness`): the rest of a big ship's rate, which decays slowly,
+    is no loop of a spiral. A depth is steady whose means differ by 0.05 m; an order that waits for
+    a steady rate ends after 20 windows at the latest. The last order stays when the manoeuvre is
+    ``done``. Orders are given at instants, up to one ``period`` after the heading is reached.
+    Heading clockwise from north, rad; ``side`` 1 to starboard, -1 to port. The speed along the bow
+    is that over ground. ``power`` is that of up to eight propulsors, ``line_force`` of the line at
+    the bollard, {n}.
 
     Not modelled: a helmsman's lateness.
     """
@@ -304,8 +308,7 @@ class Manoeuvre(HelmForRate, Sampled):
             return self._is_down_to(slowest)
         if order.until == SETTLED:
             found = order.by != RATE or self._is_found(order.share)
-            turning = self._is_steady("rate", _RATE_SHARE, _RATE)
-            steady = found and turning and self._is_moving_steadily()
+            steady = found and self._is_turning_steadily() and self._is_moving_steadily()
             return steady or self._has_lasted(_PATIENCE * self.window)
         if order.until == DEEP:
             return self._is_steady("depth", 0.0, _DEPTH)
@@ -344,6 +347,12 @@ class Manoeuvre(HelmForRate, Sampled):
     def _has_lasted(self, longest: float) -> bool:
         """Return whether the order in force has lasted so long, s."""
         return bool(self._lasted * self.period >= longest)
+
+    def _is_turning_steadily(self) -> bool:
+        if not self._is_steady("rate", _RATE_SHARE, _RATE):
+            return False
+        explained = noise(self._windows["rate"], self._samples)
+        return self._is_steady("rate", _RATE_SHARE, min(_RATE, max(_RATE_LEAST, explained)))
 
     def _is_moving_steadily(self) -> bool:
         return self._is_steady("speed", _SPEED_SHARE, _SLOWEST)

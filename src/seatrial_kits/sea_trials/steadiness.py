@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+from itertools import pairwise
 from typing import NamedTuple
 
 
@@ -22,3 +24,14 @@ def halves(window: list[float], samples: int) -> Halves | None:
     if len(window) < 2 * half:
         return None
     return Halves(sum(window[-2 * half : -half]) / half, sum(window[-half:]) / half)
+
+
+def noise(window: list[float], samples: int) -> float:
+    """Return twice the standard error of the difference of both means by the noise of the samples.
+
+    The noise is that of successive differences, which a slow change enters little (von Neumann
+    1941): white noise of variance s^2 has differences of 2 s^2, and means over n samples s^2 / n.
+    """
+    latest = window[-2 * max(1, samples // 2) :]
+    squares = sum((b - a) ** 2 for a, b in pairwise(latest))
+    return 2.0 * math.sqrt(squares / (len(latest) - 1) / (len(latest) // 2))

@@ -76,6 +76,17 @@ def test_acceleration_to_ninety_percent():
     assert found["acceleration_distance"] == pytest.approx(SPEED * (at - 0.9 * LAG), rel=1e-3)
 
 
+def test_an_acceleration_that_ends_in_ripples_has_the_figures_of_its_mean():
+    time = np.arange(0.0, 500.0, 0.5)
+    ripple, period = 0.02, 7.0
+    way = SPEED * (time - LAG * (1 - np.exp(-time / LAG)))
+    way += ripple * SPEED * period / (2 * math.pi) * np.sin(2 * math.pi * time / period)
+    found = acceleration(straight(time, way), 0.0)
+    assert found["final_speed"] == pytest.approx(SPEED, rel=2e-3)  # the last ripple is not whole
+    slowest = LAG * math.log(1.0 / (0.1 - 1.5 * ripple))  # between the crests of the ripple
+    assert LAG * math.log(1.0 / (0.1 + 1.5 * ripple)) < found["acceleration_time"] < slowest
+
+
 def test_an_acceleration_that_goes_on_is_refused():
     time = np.arange(0.0, 60.0, 0.5)
     with pytest.raises(InputError, match="speed still changes"):

@@ -6,7 +6,7 @@ from itertools import groupby
 import numpy as np
 import pytest
 
-from seatrial_kits.sea_trials.figures.course_stability import spiral, stability
+from seatrial_kits.sea_trials.figures.course_stability import loop, spiral, stability
 from seatrial_kits.sea_trials.figures.record import Record
 from seatrial_kits.sea_trials.figures.zigzag import zig_zag
 from seatrial_kits.sea_trials.manoeuvre import Manoeuvre
@@ -22,8 +22,8 @@ SLOPE, CUBE = -0.3, 90.0
 class Trial:
     """A manoeuvre of a vessel that starts at rest, and what was ordered and done."""
 
-    def __init__(self, longest=900.0, noise=0.0, stable=True, **settings):
-        self.stable = stable
+    def __init__(self, longest=900.0, noise=0.0, stable=True, gain=GAIN, lag=LAG, **settings):
+        self.stable, self.gain, self.lag = stable, gain, lag
         self.component = Manoeuvre("manoeuvre")
         for name, value in {"window": 20.0, **settings}.items():
             self.component.set(name, value)
@@ -45,7 +45,7 @@ class Trial:
             north += STEP * speed * math.cos(heading)
             east += STEP * speed * math.sin(heading)
             heading += STEP * rate
-            rate += STEP * self.turning(helm, heading, rate) / LAG
+            rate += STEP * self.turning(helm, heading, rate) / self.lag
             speed += STEP * (FULL_SPEED * ahead - speed) / SPEED_LAG
             if read("mode") == "guided":
                 depth += STEP * 0.2 * (read("target_position")[2] - depth)
@@ -63,11 +63,11 @@ class Trial:
         """Return what moves the rate, rad/s: by helm, or as the pilot holds the heading."""
         if self.component.get("mode") == "stabilize":
             self.held = getattr(self, "held", heading)
-            return GAIN * (0.5 * (self.held - heading) - 4.0 * rate)
+            return self.gain * (0.5 * (self.held - heading) - 4.0 * rate)
         self.held = heading
         if self.stable:
-            return GAIN * helm - rate
-        return GAIN * (helm - SLOPE * rate - CUBE * rate**3)
+            return self.gain * helm - rate
+        return self.gain * (helm - SLOPE * rate - CUBE * rate**3)
 
     def column(self, name):
         names = ("time", "north", "east", "heading", "helm", "ahead", "phase", "speed")
@@ -133,6 +133,28 @@ def test_a_spiral_goes_from_side_to_side_and_back():
     trial = Trial(kind="spiral", steps=2.0, longest=2000.0)
     assert trial.helms() == [1.0, 0.5, 0.0, -0.5, -1.0, -0.5, 0.0, 0.5, 1.0]
     assert trial.ended is not None
+
+
+@pytest.mark.slow
+def test_a_slow_vessel_that_is_stable_has_no_loop():
+    # Its rates are below 1.2 deg/s and decay within a minute: windows of 20 s see little of that.
+    trial = Trial(kind="spiral", steps=1.0, longest=6000.0, gain=0.02, lag=40.0)
+    assert trial.ended is not None
+    rec = Record(*(trial.column(name) for name in ("time", "north", "east", "heading", "helm")))
+    begun = int(np.flatnonzero(trial.column("phase"))[0])
+    helm, rate = spiral(Record(**{n: v[begun:] for n, v in rec.columns().items()}), None)
+    assert rate[1::2] == pytest.approx([0.0, 0.0], abs=0.01 * 0.02)
+    assert loop(helm, rate).width == 0.0
+
+
+@pytest.mark.slow
+def test_noise_of_the_compass_is_no_branch_of_a_reverse_spiral():
+    trial = Trial(kind="reverse-spiral", noise=math.radians(1.0), longest=3000.0)
+    assert trial.ended is not None
+    rec = Record(*(trial.column(name) for name in ("time", "north", "east", "heading", "helm")))
+    begun = rec.time[np.flatnonzero(np.diff(trial.column("phase"))) + 1]
+    helm, rate = (each[1:] for each in spiral(rec, None, begun.tolist()))
+    assert helm == pytest.approx(rate / GAIN, abs=0.03)
 
 
 @pytest.mark.slow

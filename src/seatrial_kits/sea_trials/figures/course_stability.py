@@ -17,6 +17,10 @@ from .result import Collector, Figures
 
 _SETTLED = 0.1
 """Share of a stretch, at its end, over which a steady rate is a mean."""
+_FOUND = 0.4
+"""The same of a reverse spiral: the helm moves about the one that is found."""
+_COINCIDE = 0.02
+"""Share of the fastest rate within which two rates are one."""
 
 
 @dataclass(frozen=True)
@@ -29,9 +33,9 @@ class Loop:
     """Range of helm in which two rates are steady, rad."""
 
 
-def steady_rate(record: Record, first: float, last: float) -> float:
-    """Return the mean rate of turn over the last tenth of a stretch of time, rad/s."""
-    start = last - _SETTLED * (last - first)
+def steady_rate(record: Record, first: float, last: float, share: float = _SETTLED) -> float:
+    """Return the mean rate of turn over a ``share`` of a stretch of time, at its end, rad/s."""
+    start = last - share * (last - first)
     psi = record.course_kept
     return float((psi(last) - psi(start)) / (last - start))
 
@@ -54,7 +58,7 @@ def pull_out(record: Record, order: float) -> Figures:
     return found.figures()
 
 
-def is_stable(starboard: float, port: float, before: float, share: float = 0.02) -> bool:
+def is_stable(starboard: float, port: float, before: float, share: float = _COINCIDE) -> bool:
     """Return whether the residual rates after pull-outs from both sides agree, rad/s.
 
     They agree within a ``share`` of the rate ``before``, of the steady turn.
@@ -69,7 +73,7 @@ def spiral(
 
     Steps begin at ``orders``, s; without them a step is a stretch of unchanged helm, so that the
     spiral is a direct one. It has at least eight rows; its helm, rate and speed are means over its
-    last tenth. Without a ``length``, m, the rates are r, rad/s. Raises InputError without helm, or
+    last tenth, with ``orders`` over its last two fifths. Without a ``length``, m, the rates are r, rad/s. Raises InputError without helm, or
     with less than three steps.
     """
     if record.helm is None:
@@ -81,18 +85,19 @@ def spiral(
         edges = np.flatnonzero(~same) + 1
     starts = np.concatenate(([0], edges))
     ends = np.concatenate((edges - 1, [len(record.helm) - 1]))
+    share = _FOUND if orders else _SETTLED
     helms, rates = [], []
     for first, last in zip(starts, ends, strict=True):
         if last - first < 8:
             continue
         at = float(record.time[first]), float(record.time[last])
-        settled = at[1] - _SETTLED * (at[1] - at[0])
+        settled = at[1] - share * (at[1] - at[0])
         scale = 1.0
         if length is not None:
             scale = length * (at[1] - settled) / record.track(settled, at[1])
         rows = slice(int(np.searchsorted(record.time, settled)), last + 1)
         helms.append(float(record.helm[rows].mean()))
-        rates.append(steady_rate(record, *at) * scale)
+        rates.append(steady_rate(record, *at, share) * scale)
     if len(helms) < 3:
         raise InputError(f"spiral: at least three steps of helm are needed, found {len(helms)}")
     return np.array(helms), np.array(rates)
@@ -136,7 +141,8 @@ def loop(helm: Any, rate: Any) -> Loop:
     ``helm`` (n,), rad, and ``rate`` (n,) are in the order of the steps, the turning point of the
     helm between. Each branch is linear between its steps. The height is the difference of the
     branches at helm 0; the width the range of helm in which they differ by more than a tenth of
-    the height. Both are 0 for branches that coincide, to 1 % of the largest rate.
+    the height. Both are 0 for branches that coincide, to 2 % of the largest rate, as pull-outs do
+    of a stable vessel.
 
     Raises InputError for a spiral with one branch only, or branches that do not enclose helm 0.
     """
@@ -155,7 +161,7 @@ def loop(helm: Any, rate: Any) -> Loop:
     at = np.linspace(low, high, 2001)
     apart = np.abs(np.interp(at, *branches[0]) - np.interp(at, *branches[1]))
     height = float(np.interp(0.0, at, apart))
-    if height <= 0.01 * float(np.abs(rate).max()):
+    if height <= _COINCIDE * float(np.abs(rate).max()):
         return Loop(0.0, 0.0)
     inside = at[apart > 0.1 * height]
     return Loop(height, float(inside[-1] - inside[0]))
