@@ -111,11 +111,14 @@ benchmark: $(INSTALLED)
 	$(BIN)/python -m benchmarks.ardupilot --write
 	$(BIN)/python -m benchmarks.big_models --write
 
-# What a release has: the distributions, the packages that the tests here ran with as a lock with the hashes of
-# their files for this platform and Python (pip install --require-hashes --no-deps -r), and an SBOM of them. Run it
-# after the tests, in their environment. The tools have one of their own: they are no part of what they list.
-release: $(INSTALLED) $(TOOLS)/.installed
+# A release: the distributions, the documentation in a folder of its version, the packages of the tests as a lock
+# with the hashes of their files for this platform and Python (pip install --require-hashes --no-deps -r), and an
+# SBOM of these packages. Run it after the tests, in their environment. The tools have an environment of their own,
+# so that neither list contains them.
+release: docs $(TOOLS)/.installed
 	rm -rf $(RELEASE) && mkdir -p $(RELEASE)
+	version=$$($(BIN)/python -c 'import seatrial; print(seatrial.__version__)') && cd $(RELEASE) && \
+		cp -r ../site $$version && $(abspath $(BIN))/python -m zipfile -c seatrial-$$version-docs.zip $$version && rm -r $$version
 	$(BIN)/python -m build --outdir $(RELEASE)
 	$(BIN)/python -m pip freeze --exclude-editable > $(RELEASE)/tested.txt
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --dry-run --ignore-installed --no-deps \

@@ -1,4 +1,4 @@
-"""Errors of identification on synthetic logs: output error, source 000's method, and a bound.
+"""Errors of identification on synthetic logs: output error, [Paulino2015]'s method, and a bound.
 
 ``python -m benchmarks.identification`` prints the table of docs/kits/identify/identification.md,
 ``--write`` puts it there. The logs are made by SciPy's DOP853 from the equations of motion;
@@ -111,12 +111,12 @@ def errors(case: Case, seed: int) -> Errors:
     source = source_method(log.command, PERIOD, longest_delay=LONGEST_DELAY, **reading)
     found = {
         "output error": ours,
-        "source 000": [source.linear, source.quadratic, source.thrust],
+        "[Paulino2015]": [source.linear, source.quadratic, source.thrust],
     }
     if not case.rotation:
         left = integrated(log.measured, PERIOD, "left")
         for name, velocity in (
-            ("source 000, left rectangles", left),
+            ("[Paulino2015], left rectangles", left),
             ("velocity without noise", run.velocity),
         ):
             B, C, _, E = least_squares_axis(run.delayed, velocity, log.measured, offset=False)
@@ -137,7 +137,7 @@ def rows(seeds: int = 20) -> Iterator[list[str]]:
             ]
             delays = {
                 "output error": [run.estimate.delay for run in runs],
-                "source 000": [run.source_delay for run in runs],
+                "[Paulino2015]": [run.source_delay for run in runs],
             }.get(method)
             right = f"{delays.count(case.delay)} of {seeds}" if delays else "given"
             yield [case.name, method, *cells, right]

@@ -1,4 +1,4 @@
-"""The VideoRay's page: linear against quadratic actuation, counted as source 000 counts."""
+"""The VideoRay's page: linear against quadratic actuation, counted as [Paulino2015] counts."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ _GRAVITY = 9.81
 _DIVERGED = 1e6
 """Times the variance of the measured signal."""
 TESTS = {"surge": (0.30, 0.30, 0.35), "yaw": (0.35, 0.35, 0.45, 0.45), "heave": (1.0, 1.0)}
-"""Amplitudes of source 000, section 7.2."""
+"""Amplitudes of [Paulino2015], section 7.2."""
 VARIABLES = ("u", "v", "w", "p", "q", "r", "w of depth")
 FORMS = {"linear": np.copy, "square": np.square, "signed square": lambda b: b * np.abs(b)}
 """Of the command beta: eqs 5.9 and 5.10, and what 5.10 should be for both directions."""

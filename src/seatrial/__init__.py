@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from .api.simulation import Simulation
     from .errors import InputError, SeatrialError, SimulationError
 
-__version__ = "0.1.0"
+__version__ = "0.2.0"
 
 find_moved()
 

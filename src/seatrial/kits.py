@@ -39,6 +39,8 @@ LIBRARIES = {
     "yaml": "seatrial[interchange]",
 }
 """What pip installs for libraries of the core that few need, by the name that is imported."""
+SYSTEM = {"pygraphviz": "libglib2.0-0 libx11-6 libxext6 libxrender1"}
+"""Debian's packages of shared libraries that a wheel needs and does not bring."""
 
 KINDS: Mapping[str, tuple[str, ...]] = {
     "algorithms": (),
@@ -208,13 +210,22 @@ def _entry(path: Path, kit: str, kind: str, name: str, value: Any) -> Entry:
 
 
 def lacking(error: Exception) -> str | None:
-    """Return what to install for a library that is not there; None for any other error."""
-    if not isinstance(error, ModuleNotFoundError):
+    """Return the reason why an optional library is not there; None for any other error.
+
+    It is not installed, or a shared library of the operating system that it needs is not.
+    """
+    if not isinstance(error, ImportError):
         return None
-    library = (error.name or "").partition(".")[0]
-    known = {name: text for kit in kits().found for name, text in kit.libraries.items()}
-    requirement = {**known, **LIBRARIES}.get(library)
-    return requirement and f'{library} is not installed: pip install "{requirement}"'
+    known = {name: text for kit in kits().found for name, text in kit.libraries.items()} | LIBRARIES
+    # Of an extension module the name is that of its file alone: its folder is the library's.
+    names = ((error.name or "").partition(".")[0], Path(error.path or "").parent.name)
+    library = next((name for name in names if name in known), None)
+    if library is None:
+        return None
+    if isinstance(error, ModuleNotFoundError):
+        return f'{library} is not installed: pip install "{known[library]}"'
+    needs = f"; on Debian: apt install {SYSTEM[library]}" if library in SYSTEM else ""
+    return f"{library} is installed and does not load: {error.msg}{needs}"
 
 
 def is_ours(module: str) -> bool:

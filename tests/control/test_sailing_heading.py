@@ -1,7 +1,7 @@
 """Heading controllers: inversion of the rudder, poles, feed-forward against figures.
 
 Figures without a formula beside them were computed independently of this project from the
-equations of source 001, corrected.
+equations of [Silva2018], corrected.
 """
 
 import math

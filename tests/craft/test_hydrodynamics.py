@@ -188,7 +188,7 @@ def test_linear_restoring_is_the_conservative_one_to_first_order():
     np.testing.assert_allclose(linear, conservative, rtol=0, atol=1e-12)
 
 
-# Source 000, table 2.1 and eq. 5.8: 93.4127 N at 4.2 knots, by C_d S = 0.04002 m2 in fresh water.
+# [Paulino2015], table 2.1 and eq. 5.8: 93.4127 N at 4.2 knots, by C_d S = 0.04002 m2 in fresh water.
 TOP_SPEED, FULL_THRUST, DRAG_AREA = 4.2 * 1852 / 3600, 93.4127, 0.04002
 
 

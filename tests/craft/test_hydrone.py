@@ -1,6 +1,6 @@
 """The Hydrone's equations against conservation laws, linear theory and equilibria.
 
-Numbers come from the published parameters (source 004) by independent calculation.
+Numbers come from the published parameters ([Timm2026]) by independent calculation.
 """
 
 import tomllib

@@ -26,7 +26,7 @@ MARINER = LinearDerivatives(
 
 
 def solved(d):
-    """Return A* and B* of source 002, eqs 4 and 5, by a linear solver."""
+    """Return A* and B* of [Moro1979], eqs 4 and 5, by a linear solver."""
     moment = d.mass * d.center_of_gravity
     M = [[d.mass - d.Y_vdot, moment - d.Y_rdot], [moment - d.N_vdot, d.inertia - d.N_rdot]]
     right = [[d.Y_v, d.Y_r - d.mass, d.Y_delta], [d.N_v, d.N_r - moment, d.N_delta]]

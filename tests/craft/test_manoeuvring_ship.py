@@ -1,6 +1,6 @@
 """The Mariner against closed forms and independent computations.
 
-Numbers come from the equations of source 002 and of Chislett and Stroem-Tejsen (1965) by
+Numbers come from the equations of [Moro1979] and of Chislett and Stroem-Tejsen (1965) by
 independent calculation.
 """
 

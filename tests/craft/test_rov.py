@@ -1,4 +1,4 @@
-"""The ROV against the equations of source 000 written anew, and conservation laws."""
+"""The ROV against the equations of [Paulino2015] written anew, and conservation laws."""
 
 import math
 

@@ -1,7 +1,7 @@
 """The sailing boat against independent figures, conservation laws and symmetry.
 
 Figures without a formula beside them were computed independently of this project from the
-equations of source 001, corrected.
+equations of [Silva2018], corrected.
 """
 
 import csv

@@ -1,6 +1,6 @@
 """The thruster ship against closed forms, conservation laws and independent computations.
 
-Numbers come from the equations of source 003 by independent calculation.
+Numbers come from the equations of [ShipScript] by independent calculation.
 """
 
 import csv

@@ -1,4 +1,4 @@
-"""The attitude and acceleration of the VideoRay Pro 4 against source 000, table 7.1."""
+"""The attitude and acceleration of the VideoRay Pro 4 against [Paulino2015], table 7.1."""
 
 import math
 
@@ -23,7 +23,7 @@ PERFECT = dict.fromkeys(ERRORS, 0.0)
 
 
 def readings(attitudes, **values):
-    """Return (attitude, minus specific force), the signs of source 000, as read at 10 Hz."""
+    """Return (attitude, minus specific force), the signs of [Paulino2015], as read at 10 Hz."""
     values = {**PROFILE.parameters("sensors.ahrs"), **values}
     rows = run(
         started(Ahrs, **values),

@@ -24,7 +24,7 @@ def test_on_a_deck_that_heels_the_gear_carries_the_weight_across_and_along():
     assert at.gear_force == pytest.approx(
         (0.0, -98.1 * math.sin(math.radians(14)), -98.1 * math.cos(math.radians(14)))
     )
-    # Source 004, eq. 77: 24 % of the weight at 14 degrees.
+    # [Timm2026], eq. 77: 24 % of the weight at 14 degrees.
     assert at.lateral_share == pytest.approx(0.2419, abs=1e-4)
     assert at.sliding == pytest.approx(math.tan(math.radians(14.0)) / 0.6)
     assert at.tipping == pytest.approx(math.tan(math.radians(14.0)) * 0.25 / 0.2)
@@ -64,7 +64,7 @@ def test_without_weight_on_the_legs_there_is_no_limit(values):
 
 
 def test_the_bow_goes_down_by_pitch_and_sinkage():
-    # Source 004, eq. 73: 0.638 m sin(7 degrees) = 7.8 cm.
+    # [Timm2026], eq. 73: 0.638 m sin(7 degrees) = 7.8 cm.
     at = deck(attitude=[0, math.radians(-7.0), 1.0])
     assert at.bow_immersion == pytest.approx(0.0778, abs=1e-4)
     sunk = deck(attitude=[0, math.radians(-7.0), 1.0], position=[5, 5, 0.02])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib
 import os
 import re
 import subprocess
@@ -17,7 +18,7 @@ from seatrial import kits as of_kits
 from seatrial.cli.commands import commands, loaded
 from seatrial.errors import InputError
 from seatrial.fmi.components.index import component_class, components
-from seatrial.kits import KINDS, kits, read_kit
+from seatrial.kits import KINDS, kits, lacking, read_kit
 from seatrial.moved import MOVED
 from seatrial.plugins import offered, service
 from seatrial.shipped import provided_place
@@ -206,3 +207,21 @@ def test_old_import_paths_are_the_same_modules() -> None:
     code += "warnings.simplefilter('error')\nimport seatrial.links.can.component\n"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
     assert "DeprecationWarning: seatrial.links.can.component is seatrial_kits.can" in done.stderr
+
+
+def test_a_library_that_lacks_a_shared_library_is_no_error_of_ours(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The interpreter's own error, of an extension module that the loader refuses."""
+    package = tmp_path / "pygraphviz"
+    package.mkdir()
+    (package / "__init__.py").write_text("from ._graphviz import *")
+    (package / "_graphviz.abi3.so").write_bytes(b"\x7fELF cut short")
+    monkeypatch.syspath_prepend(str(tmp_path))
+    monkeypatch.delitem(sys.modules, "pygraphviz", raising=False)
+    with pytest.raises(ImportError) as refused:
+        importlib.import_module("pygraphviz")
+    said = lacking(refused.value)
+    assert said is not None
+    assert said.startswith("pygraphviz is installed and does not load: ")
+    assert "apt install libglib2.0-0" in said

@@ -91,10 +91,10 @@ def _manifest(phase: str, scenario: str, signals: Mapping[str, str]) -> dict[str
                 "sha256": "2" * 64,
                 "step": 0.01,
                 "parameters": {
-                    "mass": _parameter(21.987, "kg", source="004, table 5", **stated),
-                    "added_mass.x": _parameter(1.10, "kg", source="004, eq. 39", **stated),
-                    "added_mass.y": _parameter(17.59, "kg", source="004, eq. 39", **stated),
-                    "added_mass.z": _parameter(17.59, "kg", source="004, eq. 39", **stated),
+                    "mass": _parameter(21.987, "kg", source="[Timm2026], table 5", **stated),
+                    "added_mass.x": _parameter(1.10, "kg", source="[Timm2026], eq. 39", **stated),
+                    "added_mass.y": _parameter(17.59, "kg", source="[Timm2026], eq. 39", **stated),
+                    "added_mass.z": _parameter(17.59, "kg", source="[Timm2026], eq. 39", **stated),
                     "restoring": _parameter("surface-linear", "1"),
                     "start_attitude.psi": _parameter(0.5235987755982988, "rad"),
                 },
@@ -105,7 +105,9 @@ def _manifest(phase: str, scenario: str, signals: Mapping[str, str]) -> dict[str
                 "step": 0.01,
                 "parameters": {
                     "phase": _parameter(phase, "1"),
-                    "mass": _parameter(10.0, "kg", source="004, text under table 8", **stated),
+                    "mass": _parameter(
+                        10.0, "kg", source="[Timm2026], text under table 8", **stated
+                    ),
                     **{f"pad.{axis}": _parameter(value, "m") for axis, value in pad.items()},
                 },
                 "views": {"landing-point": {"place": "pad", "phase": "phase"}},

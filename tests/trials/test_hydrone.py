@@ -1,6 +1,6 @@
 """The published Hydrone runs through the shipped campaigns: FMUs and in process.
 
-Figures "stated" are those of source 004 (table 8 and chapter 4); "computed" are of
+Figures "stated" are those of [Timm2026] (table 8 and chapter 4); "computed" are of
 tests/reference, which an independent implementation computed.
 """
 

@@ -114,7 +114,7 @@ def test_a_report_is_one_page_with_everything(write_run):
         "The deck from above",
         "Forces and moments",
         "Other signals of downwash",
-        "004, table 5",
+        "[Timm2026], table 5",
         "stated",
         "1.1, 17.59, 17.59",
         "real_time_factor",

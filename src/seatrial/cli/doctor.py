@@ -67,7 +67,7 @@ def _platform() -> tuple[bool, str]:
 
 
 def _packages() -> tuple[bool, str]:
-    wanted = ("casadi", "fmpy", "numpy", "pint", "plotly", "pydantic", "pythonfmu", "scipy")
+    wanted = ("casadi", "fmpy", "numpy", "pint", "pydantic", "pythonfmu", "scipy")
     found, lacking = [], []
     for name in wanted:
         try:

@@ -13,7 +13,7 @@ class DepthHold(AxisHold):
 
     Depths m, positive down; ``heave`` N, positive down, along the vehicle's z axis: roll and
     pitch are taken to be small. The weight that buoyancy does not balance is found by the
-    integral. Source 000 has no control of depth; all of this is ours.
+    integral. [Paulino2015] has no control of depth; all of this is ours.
 
     Defaults: mass with added mass of the VideoRay Pro 4, and four fifths of its vertical thrust.
     """

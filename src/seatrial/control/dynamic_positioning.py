@@ -51,7 +51,7 @@ class DynamicPositioning(WaveFiltered, Sampled):
     m/s; rates rad/s. ``demand`` in body axes, N and N.m about the body origin, the moment
     positive to starboard.
 
-    Defaults: masses with added mass of the ship of source 003, and what it calls 100 % as
+    Defaults: masses with added mass of the ship of [ShipScript], and what it calls 100 % as
     capacity. Coupling of sway and yaw and Coriolis forces are left out.
     """
 

@@ -63,13 +63,13 @@ class Guidance(GuidanceOrders):
     both, the others a position too; depth is needed with ``depth_control`` only.
 
     **Legs** (and the straight lines to a position or home, which begin where the craft was
-    when they were ordered) are followed by line of sight (Fossen 2011, section 10.3), e the
+    when they were ordered) are followed by line of sight ([Fossen2011], section 10.3), e the
     cross-track error, positive to starboard, chi the direction of the leg:
 
         heading_wanted = chi - atan((e + integral_gain I) / lookahead)
         I' = lookahead e / ((e + integral_gain I)^2 + lookahead^2)
 
-    (I: Børhaug, Pavlov and Pettersen 2008, 0 at the start of each leg). So a craft of speed U
+    (I: [Borhaug2008], 0 at the start of each leg). So a craft of speed U
     without sway comes in as e' = -U e / sqrt(lookahead^2 + e^2) once I is small, and a current
     V_c across the leg leaves no error but a crab angle of asin(V_c / U). Linearised, e has the
     damping ratio sqrt(U / integral_gain) / 2. Depth goes along the leg in proportion. Past its

@@ -21,7 +21,7 @@ class Offset(NamedTuple):
 
 
 def from_leg(start: Point, end: Point, here: Point) -> Offset:
-    """Return the offset from the straight line through two points (Fossen 2011, 10.3.2).
+    """Return the offset from the straight line through two points ([Fossen2011], 10.3.2).
 
         course = atan2(E, N),   along = N' cos(course) + E' sin(course)
         across = -N' sin(course) + E' cos(course)
@@ -51,8 +51,8 @@ def from_circle(centre: Point, radius: float, here: Point) -> Offset:
 def line_of_sight(offset: Offset, integral: float, lookahead: float, gain: float) -> float:
     """Return the heading that leads onto a path: course - atan((e + gain integral) / lookahead).
 
-    e is the cross-track error; Fossen 2011, 10.3.2 (``lookahead``-based steering). With the
-    integral of `integral_rate` it is that of Børhaug, Pavlov and Pettersen (2008). rad.
+    e is the cross-track error; [Fossen2011], 10.3.2 (``lookahead``-based steering). With the
+    integral of `integral_rate` it is that of Børhaug, Pavlov and Pettersen [Borhaug2008]. rad.
     """
     return offset.course - math.atan2(offset.across + gain * integral, lookahead)
 

@@ -11,7 +11,7 @@ from .wave_filter import WaveFiltered, unwrapped
 
 
 class HeadingAutopilot(WaveFiltered, Sampled):
-    """PID control of the heading: delta = Kp e + Kd e' + delta_I (source 002, eqs 8 and 9).
+    """PID control of the heading: delta = Kp e + Kd e' + delta_I ([Moro1979], eqs 8 and 9).
 
     e = heading - reference, wrapped to +-pi; e' = yaw_rate - reference_rate. With the source's
     K and T_d (dimensionless) Kp = K and Kd = K T_d L / U. The source has no integral action;
@@ -29,7 +29,7 @@ class HeadingAutopilot(WaveFiltered, Sampled):
     Angles rad, clockwise from north, any number of turns; rates rad/s, to starboard positive.
     ``reference_rate`` is 0 unless a reference model is connected (see `HeadingReference`).
 
-    Defaults are the gains of source 002 for the Mariner at 15 knots: K = 0.034 and
+    Defaults are the gains of [Moro1979] for the Mariner at 15 knots: K = 0.034 and
     T_d = 1.25379 with the rudder's effect in B as it must be (docs/vehicles/mariner.md).
     """
 

@@ -13,7 +13,8 @@ class HeadingHold(AxisHold):
     """PID control of the heading, from a compass: yaw moment, with the law of `AxisHold`.
 
     Headings rad, clockwise from north, any number of turns: error and rate go the shorter way.
-    ``yaw_moment`` N.m, positive to starboard. Source 000 controls the yaw rate only; this is ours.
+    ``yaw_moment`` N.m, positive to starboard. [Paulino2015] controls the yaw rate only; this is
+    ours.
 
     Defaults: inertia with added inertia of the VideoRay Pro 4, and half of the moment that its
     thrusters have.

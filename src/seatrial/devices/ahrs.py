@@ -22,7 +22,7 @@ class Ahrs(Sensor):
     (-pi, pi], psi in [0, 2 pi) as on a compass card. ``acceleration`` is the inertial
     acceleration of the body origin in body axes, dv/dt + omega x v. At rest and level the
     accelerometer reads (0, 0, -gravity), and tilted a share of gravity on every axis: who wants
-    the acceleration of the vehicle must add R^T (0, 0, gravity) with the attitude. Source 000,
+    the acceleration of the vehicle must add R^T (0, 0, gravity) with the attitude. [Paulino2015],
     table 7.1, has the mean readings at rest with the other sign.
 
     Defaults are the VideoRay Pro 4's: 0.1 s; attitude in 0.1 degrees with the noise of the dry

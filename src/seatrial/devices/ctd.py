@@ -28,7 +28,7 @@ class Ctd(Sensor):
 
     with the salinity scale of 1978 solved for C. From what it measured, errors and all, it
     computes ``salinity`` (the same scale), ``depth`` = pressure / (density gravity) and
-    ``speed_of_sound`` (Mackenzie 1981). Pressure is that above the air's. Out of the water there
+    ``speed_of_sound`` ([Mackenzie1981]). Pressure is that above the air's. Out of the water there
     is nothing to measure.
 
     Defaults: one level of 10 degrees Celsius and salinity 35. Errors, all assumed: a

@@ -1,4 +1,4 @@
-"""Lift and drag of foils over angle of attack and flap, from the tables of source 001.
+"""Lift and drag of foils over angle of attack and flap, from the tables of [Silva2018].
 
 They stand here because equations of motion (as expressions) and sail controllers (as numbers)
 read the same tables.
@@ -53,7 +53,7 @@ class FoilTable:
 
 @cache
 def sail_naca0015(entry: str = "verbatim", high_alpha: str = "table") -> FoilTable:
-    """Return the sail's table: NACA 0015, flaps 0 to 30 deg; source 001, table A.2.
+    """Return the sail's table: NACA 0015, flaps 0 to 30 deg; [Silva2018], table A.2.
 
     ``entry``: "verbatim", or "patched": C_L of flap 15, alpha 175 deg is -0.6 where the source
     prints -1.6 between neighbours of -0.142, -1.2, 0.2 and -1.4.
@@ -76,7 +76,7 @@ def sail_naca0015(entry: str = "verbatim", high_alpha: str = "table") -> FoilTab
 
 @cache
 def foil_naca63010(high_alpha: str = "table") -> FoilTable:
-    """Return the table of keel and rudder: NACA 63-010, no flap; source 001, table A.1.
+    """Return the table of keel and rudder: NACA 63-010, no flap; [Silva2018], table A.1.
 
     The row of 180 deg, which the source lacks, mirrors that of 0. ``high_alpha`` as of
     `sail_naca0015`. Raises InputError for another text.

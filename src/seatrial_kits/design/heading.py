@@ -72,7 +72,7 @@ def design_heading(
 ) -> HeadingDesign:
     """Return the root loci of the vehicle ``name`` under delta = K (e + T_d e').
 
-    Source 002, sections 3 and 4. The ship is the vehicle's `ManoeuvringShip`, linear or
+    [Moro1979], sections 3 and 4. The ship is the vehicle's `ManoeuvringShip`, linear or
     linearised on a straight course at its service speed. ``derivative_times`` are in units of
     L / U; None takes 0 and that of the vehicle's own autopilot.
 
@@ -108,7 +108,7 @@ def dimensionless(ship: ManoeuvringShip) -> tuple[Vector, Vector]:
 
 
 def closed_loop(A: Vector, B: Vector, K: float, T_d: float) -> Vector:
-    """Return the matrix (3, 3) of (v, r, psi) under delta = K psi + K T_d r: source 002, eq. II."""
+    """Return the matrix (3, 3) of (v, r, psi) under delta = K psi + K T_d r: [Moro1979], eq. II."""
     return np.array(
         [
             [A[0, 0], A[0, 1] + K * T_d * B[0], K * B[0]],

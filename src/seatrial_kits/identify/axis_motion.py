@@ -16,15 +16,16 @@ class AxisMotion(Plant):
         place' = nu
         nu'    = (B/A) nu + (C/A) |nu| nu + D/A + (E/A) tau
 
-    Source 000, eqs 5.9 and 5.10, with the beta^2 of the latter, which cannot reverse, corrected to
-    beta |beta|: ``thrust_law`` "linear" is f = beta, "quadratic" f = beta |beta|. ``linear``,
+    [Paulino2015], eqs 5.9 and 5.10, with the beta^2 of the latter, which cannot reverse, corrected
+    to beta |beta|: ``thrust_law`` "linear" is f = beta, "quadratic" f = beta |beta|. ``linear``,
     ``quadratic``, ``offset`` and ``thrust`` are B/A, C/A (drag: not positive), D/A and E/A: a log
-    of commands and motion determines these four ratios alone. beta is the command, -1 to 1; nu
-    the velocity along the body axis, m/s, or about it, rad/s; place its integral.
+    of commands and motion determines these four ratios alone. beta is the command, -1 to 1; nu the
+    velocity along the body axis, m/s, or about it, rad/s; place its integral.
 
-    tau is the share of full thrust: f(beta) with ``lag`` "none", as in source 000; with "thruster"
-    T tau' = f(beta) - tau, T the ``time_constant``, which is ours: a mass that is identified from
-    the motion of a vehicle whose thrusters need 0.15 s is 30 to 40 % too large without it.
+    tau is the share of full thrust: f(beta) with ``lag`` "none", as in [Paulino2015]; with
+    "thruster" T tau' = f(beta) - tau, T the ``time_constant``, which is ours: a mass that is
+    identified from the motion of a vehicle whose thrusters need 0.15 s is 30 to 40 % too large
+    without it.
 
     This class is surge, sway or heave, with A in kg; `AxisRotation` is yaw.
 

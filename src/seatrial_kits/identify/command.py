@@ -100,7 +100,7 @@ def _print_axis(found: Study) -> None:
 def _table(rows: list[RatioRow]) -> Table:
     table = Table(box=SIMPLE, padding=(0, 1, 0, 0))
     table.add_column("")
-    for heading in ("output error", "deviation", "method of source 000"):
+    for heading in ("output error", "deviation", "method of [Paulino2015]"):
         table.add_column(heading, justify="right")
     table.add_column("unit")
     for row in rows:

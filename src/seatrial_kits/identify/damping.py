@@ -100,17 +100,17 @@ def cross_flow(hull: HullForm, width: tuple[float, ...], drag: float, density: f
 
 
 def damping(hull: HullForm, speed: float, density: float, viscosity: float) -> list[Derivative]:
-    """Return the derivatives of eq. 25 of source 004 that dimensions give.
+    """Return the derivatives of eq. 25 of [Timm2026] that dimensions give.
 
     ``speed`` U, m/s, is that at which the friction is taken for linear; ``density``, kg/m3;
     ``viscosity``, kinematic, m2/s. T is the draught and B the beam, x ahead of the body origin:
 
-        X_u    = -1/2 rho S (1 + k) C_f U                                      004, eq. 21
-        X_u|u| = -1/2 rho A C_d                                                004, eq. 22
-        Y_v|v| = -1/2 rho int T C_d dx                                         004, eq. 23
+        X_u    = -1/2 rho S (1 + k) C_f U                                      [Timm2026], eq. 21
+        X_u|u| = -1/2 rho A C_d                                                [Timm2026], eq. 22
+        Y_v|v| = -1/2 rho int T C_d dx                                         [Timm2026], eq. 23
         N_v|v| = -1/2 rho int T C_d x dx
-        Y_r|r| = -1/2 rho int T C_d x|x| dx         004, eq. 24, printed for N_r|r|
-        N_r|r| = -1/2 rho int T C_d |x|^3 dx                         004, eq. 24, corrected
+        Y_r|r| = -1/2 rho int T C_d x|x| dx         [Timm2026], eq. 24, printed for N_r|r|
+        N_r|r| = -1/2 rho int T C_d |x|^3 dx                         [Timm2026], eq. 24, corrected
         Z_w|w|, M_q|q| as Y_v|v|, N_r|r| with B,  M_w|w| = -N_v|v|,  Z_q|q| = -Y_r|r| with B
 
     A strip of the hull moves with x r in a turn: its drag goes with (x r)^2, and the moment of that
@@ -124,12 +124,12 @@ def damping(hull: HullForm, speed: float, density: float, viscosity: float) -> l
     y = cross_flow(hull, hull.draught, hull.drag_across * hull.hulls_across, density)
     z = cross_flow(hull, hull.beam, hull.drag_down * hull.hulls, density)
     return [
-        Derivative("X_u", -ahead, "N.s/m", "004, eq. 21"),
-        Derivative("X_u|u|", -form, "N.s2/m2", "004, eq. 22"),
-        Derivative("Y_v|v|", -y.force, "N.s2/m2", "004, eq. 23"),
+        Derivative("X_u", -ahead, "N.s/m", "[Timm2026], eq. 21"),
+        Derivative("X_u|u|", -form, "N.s2/m2", "[Timm2026], eq. 22"),
+        Derivative("Y_v|v|", -y.force, "N.s2/m2", "[Timm2026], eq. 23"),
         Derivative("N_v|v|", -y.lever, "N.s2/m", "cross-flow"),
-        Derivative("Y_r|r|", -y.by_turning, "N.s2/rad2", "cross-flow; 004, eq. 24 as printed"),
-        Derivative("N_r|r|", -y.moment, "N.m.s2/rad2", "004, eq. 24, corrected"),
+        Derivative("Y_r|r|", -y.by_turning, "N.s2/rad2", "cross-flow; [Timm2026], eq. 24, printed"),
+        Derivative("N_r|r|", -y.moment, "N.m.s2/rad2", "[Timm2026], eq. 24, corrected"),
         Derivative("Z_w|w|", -z.force, "N.s2/m2", "cross-flow"),
         Derivative("M_w|w|", z.lever, "N.s2/m", "cross-flow"),
         Derivative("Z_q|q|", z.by_turning, "N.s2/rad2", "cross-flow"),

@@ -19,16 +19,17 @@ _PLANAR = "planar"
 
 
 class Excitation(Noise, Sampled):
-    """Random amplitudes, each held for a ``period``: source 000, section 5.2.
+    """Random amplitudes, each held for a ``period``: [Paulino2015], section 5.2.
 
     At instant k a whole number from -100 to 100, all equally likely, divided by 100 and
     multiplied by ``amplitude``: the autocorrelation over instants is that of white noise. Source
-    000 holds for 1 s, 0.2 s where surge and yaw are excited together, with amplitudes of 0.2 to 1.
+    [Paulino2015] holds for 1 s, 0.2 s where surge and yaw are excited together, with amplitudes of
+    0.2 to 1.
 
     ``command`` is positive ahead, to starboard about z, and down. The motors get it with the
     same sign (``axis`` = "surge": both horizontal ones), with opposite signs ("yaw": port ahead),
     or the vertical one alone ("heave"). With "planar" each horizontal motor gets its own
-    (source 000, section 5.3), and ``command`` is the port one's.
+    ([Paulino2015], section 5.3), and ``command`` is the port one's.
 
     Until ``rest`` has passed all commands are 0.
     """

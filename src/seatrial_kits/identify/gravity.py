@@ -27,7 +27,7 @@ def acceleration_along(
     With f = J1^T (0, 0, g) = g (-sin theta, cos theta sin phi, cos theta cos phi), z down:
 
     - "specific-force": reading = a - f, what most units give; at rest and level -g on z.
-    - "gravity-less-acceleration": reading = f - a. Source 000, table 7.1 reads f at rest, which
+    - "gravity-less-acceleration": reading = f - a. [Paulino2015], table 7.1 reads f at rest, which
       it takes for offsets; the sign of a is inferred.
     - "gravity-plus-acceleration": reading = f + a, the other sign.
     - "acceleration": reading = a, and the attitude is not used.

@@ -112,7 +112,7 @@ def output_error(
     a lag takes the place of a part of the delay. Of all delays the least sum is kept; the lag is,
     if Schwarz's criterion n ln(sum) + k ln(n), k unknowns, is lower with it.
 
-    Source 000 uses least squares; this method is ours (see Klein and Morelli 2006).
+    [Paulino2015] uses least squares; this method is ours (see [Klein2006]).
     Holds for a residual that the command does not depend on: an open loop, or a closed one whose
     command was recorded and whose sensor noise moves it little.
     """
@@ -214,7 +214,7 @@ def _fit(
 
 
 def _guess(log: AxisLog, delay: int, structure: Structure) -> Vector:
-    """Return where to start from: source 000's least squares, at this delay."""
+    """Return where to start from: [Paulino2015]'s least squares, at this delay."""
     quadratic = structure.thrust_law == "quadratic"
     beta = log.late_command(delay)
     place = log.reading == "place"
@@ -239,7 +239,7 @@ def covariances(
     """Return the covariance of the estimate if the residual is white, and as it is.
 
     White: s^2 (J^T J)^-1. As it is, with its autocorrelation R: (J^T J)^-1 [sum_ij R_(i-j) J_i
-    J_j^T] (J^T J)^-1 (Klein and Morelli 2006), R up to lags of sqrt(n) with Bartlett's weights,
+    J_j^T] (J^T J)^-1 ([Klein2006]), R up to lags of sqrt(n) with Bartlett's weights,
     which keep the sum positive. ``jacobian`` (n, k), ``residual`` (n,); ``stretches`` are the
     lengths of its parts that are not correlated with each other, None: one. What the residual
     does not depend on has a variance beyond all others.

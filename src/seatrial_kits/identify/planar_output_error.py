@@ -34,7 +34,7 @@ _ROUNDS = 3
 
 @dataclass(frozen=True)
 class PlanarKnown:
-    """What surge and yaw have shown: source 000, section 5.3, takes it from their own runs."""
+    """What surge and yaw have shown: [Paulino2015], section 5.3, takes it from their own runs."""
 
     mass: tuple[float, float]
     """m11 in kg and m33 in kg.m2, with added mass."""
@@ -134,7 +134,7 @@ def planar_simulated(log: PlanarLog, known: PlanarKnown, found: PlanarFit) -> Ve
 
 
 def as_the_source(log: PlanarLog, known: PlanarKnown) -> PlanarEstimate:
-    """Return what source 000, eqs 5.20 and 5.21, makes of a log, its signs corrected.
+    """Return what [Paulino2015], eqs 5.20 and 5.21, makes of a log, its signs corrected.
 
     Velocities by discrete integration of the accelerations, yaw rate and its change by
     differences of the heading; linear drag.
@@ -268,7 +268,7 @@ class PlanarMotion(Plant):
         m22 v' =               - D_v(v) - m11 u r              D_i(x) = (d_i + q_i |x|) x
         m33 r' = arm (E1 s1 - E2 s2) - D_r(r) + (m11 - m22) u v
 
-    Source 000, eq. 5.18, with its missing lever arm and, of ours, the quadratic drag q that it
+    [Paulino2015], eq. 5.18, with its missing lever arm and, of ours, the quadratic drag q that it
     sets aside here. ``mass`` has the added mass, thruster 1 ahead turns to starboard. s is each
     thruster's share of its full thrust E: with ``lag`` "none" the command, with "thruster"
     T s' = command - s.

@@ -1,4 +1,4 @@
-"""Identification method of source 000: discrete integration, correlation, least squares.
+"""Identification method of [Paulino2015]: discrete integration, correlation, least squares.
 
 It is here to be compared with. With noise its drag is of the wrong size, because the regressors
 carry the integrated noise of the sensor; `seatrial_kits.identify.output_error` is what works.
@@ -62,7 +62,7 @@ def correlation_delay(command: Vector, output: Vector, longest: int) -> int:
 
 
 def normalised_least_squares(regressors: Vector, right_hand_side: Vector) -> Vector:
-    """Return x that minimises |regressors x - right_hand_side|: source 000, eqs 5.13 and 5.14.
+    """Return x that minimises |regressors x - right_hand_side|: [Paulino2015], eqs 5.13 and 5.14.
 
     Columns are divided by their largest absolute value: eq. 5.14 prints max(), which may be 0 or
     negative. A column of zeros gets 0.
@@ -77,7 +77,7 @@ def normalised_least_squares(regressors: Vector, right_hand_side: Vector) -> Vec
 def least_squares_axis(
     command: Vector, velocity: Vector, acceleration: Vector, *, offset: bool
 ) -> tuple[float, float, float, float]:
-    """Return B/A, C/A, D/A, E/A from series (n,): source 000, eq. 5.12.
+    """Return B/A, C/A, D/A, E/A from series (n,): [Paulino2015], eq. 5.12.
 
     Regressors nu, |nu| nu, 1 (with ``offset``, else D = 0) and the command, shifted by the delay
     already; for quadratic thrust (eq. 5.10, corrected) give beta |beta|. A drag of the wrong sign,
@@ -113,7 +113,7 @@ def source_method(
     offset: bool = False,
     rule: Rule = "trapezoid",
 ) -> SourceEstimate:
-    """Return what source 000, section 5.2, finds for one axis from a log of samples (n,).
+    """Return what [Paulino2015], section 5.2, finds for one axis from a log of samples (n,).
 
     Either ``acceleration`` along the axis, which is integrated, or ``angle``, unwrapped, which is
     differentiated twice (rad, or a depth in m). The delay is that of the correlation of command
@@ -133,7 +133,7 @@ def source_method(
 
 @dataclass(frozen=True)
 class PlanarEstimate:
-    """What source 000, section 5.3, finds with surge and yaw known: kg, N.s/m, N, N."""
+    """What [Paulino2015], section 5.3, finds with surge and yaw known: kg, N.s/m, N, N."""
 
     m22: float
     d22: float
@@ -152,7 +152,7 @@ def planar_least_squares(
     d33: float = 0.0,
     arm: float = 1.0,
 ) -> PlanarEstimate:
-    """Return sway mass and drag and both motors' thrust: source 000, eqs 5.18 to 5.21.
+    """Return sway mass and drag and both motors' thrust: [Paulino2015], eqs 5.18 to 5.21.
 
     ``nu`` = (u, v, r) and ``nu_dot`` (n, 3) in body axes, ``commands`` (n, 2) of the two motors,
     ``arm`` their lever arm, m, by which the row of yaw is divided; 1 is the source's. In
@@ -178,7 +178,7 @@ def planar_least_squares(
 
 
 def thrust_at_top_speed(density: float, drag_area: float, speed: float) -> float:
-    """Return E_1, N, that balances the drag at top speed: source 000, eq. 5.8, without G.
+    """Return E_1, N, that balances the drag at top speed: [Paulino2015], eq. 5.8, without G.
 
     ``density`` of the water in kg/m3, ``drag_area`` C_d S in m2, ``speed`` in m/s.
     """

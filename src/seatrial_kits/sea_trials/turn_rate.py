@@ -19,7 +19,7 @@ class HelmForRate:
 
     clip(x) = x held within +-1; I stays within that too. Time constants go by 1 / R, as do those
     of a vessel that turns. The helm begins at 1, where the turn left it. Shares are positive to the
-    side of that turn. Bech 1968: the branch of the r-helm curve that is not stable is steady with
+    side of that turn. [Bech1968]: the branch of the r-helm curve that is not stable is steady with
     the rate controlled.
     """
 

@@ -54,7 +54,7 @@ def morris(outputs: Outputs, keys: int, trajectories: int, seed: int) -> list[Mo
     """Return the effects on each output, from ``trajectories`` (keys + 1) runs.
 
     mu* is the mean size of the effect of a key, sigma its standard deviation: large where the
-    effect depends on the other keys or is not linear (Morris 1991; Campolongo et al. 2007). Points
+    effect depends on the other keys or is not linear ([Morris1991]; [Campolongo2007]). Points
     are shares of the ranges, on four levels. Raises InputError if SALib is not installed.
     """
     sampling, analysis = needed("SALib.sample.morris"), needed("SALib.analyze.morris")

@@ -46,7 +46,7 @@ def find_boundary(
 
     A third of the runs are the corners and points of Sobol's sequence; each further batch is where
     1.96 sigma - |mu| is greatest, mu and sigma being mean and standard deviation of a Gaussian
-    process of the runs so far (the straddle heuristic of Bryan et al. 2005, Active learning for
+    process of the runs so far (the straddle heuristic of [Bryan2005], Active learning for
     identifying function threshold boundaries); within a batch sigma is as if the runs before had
     found mu. ``value`` gets points, a row each, and returns a number for each: positive where the
     trial passes.

@@ -25,8 +25,8 @@ def search(
 
     ``cma-es`` is the covariance matrix adaptation of Hansen (2016, The CMA evolution strategy: a
     tutorial) from ``start``; where it has converged it begins anew at a random point with twice as
-    many points a generation (Auger and Hansen 2005), until all runs are used. ``bayesian`` is
-    Optuna's multivariate tree-structured Parzen estimator (Bergstra et al. 2011). Raises InputError
+    many points a generation ([Auger2005]), until all runs are used. ``bayesian`` is
+    Optuna's multivariate tree-structured Parzen estimator ([Bergstra2011]). Raises InputError
     if the library is not installed.
     """
     looked = _Looked(value, start)

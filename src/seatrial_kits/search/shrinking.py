@@ -40,8 +40,8 @@ class Shrinking:
 
         With ``first`` "keys" it changes few keys: one after the other goes back to nominal while
         it still fails. Then the distance is made less: along the line to nominal, by sections; and
-        by steps to the nearest point of the linearised boundary (Hasofer and Lind 1974, Rackwitz
-        and Fiessler 1978) that are brought back to the boundary by sections.
+        by steps to the nearest point of the linearised boundary ([Hasofer1974], [Rackwitz1978])
+        that are brought back to the boundary by sections.
         """
         if first == "keys":
             point = self._fewer_keys(point)

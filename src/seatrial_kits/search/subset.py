@@ -48,10 +48,10 @@ def subset_simulation(
 ) -> Rare:
     """Return the probability that value <= 0 under a standard normal distribution.
 
-    Subset simulation (Au and Beck 2001, Estimation of small failure probabilities in high
+    Subset simulation ([Au2001], Estimation of small failure probabilities in high
     dimensions by subset simulation): the lowest tenth of the runs of a level set a threshold, and
     begin chains that stay below it; the probability is the product of the shares of the levels.
-    Chains go by adaptive conditional sampling (Papaioannou et al. 2015, MCMC algorithms for subset
+    Chains go by adaptive conditional sampling ([Papaioannou2015], MCMC algorithms for subset
     simulation, section 3.4). The variance of a level's share is that of the sums over families of
     runs, those whose chains began in one chain of the level before; levels are taken as
     independent. Runs are asked for by a tenth of a level: one step of all chains. ``least`` is a

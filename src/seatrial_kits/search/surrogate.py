@@ -16,7 +16,7 @@ _LENGTHS, _VARIANCES, _NOISES = (0.03, 30.0), (1e-3, 1e3), (1e-8, 1e-1)
 class Surrogate:
     """Gaussian process of values as `_levelled`: Matérn's covariance, with a length per key.
 
-    Lengths and variance are those of the greatest likelihood (Rasmussen and Williams 2006,
+    Lengths and variance are those of the greatest likelihood ([Rasmussen2006],
     Gaussian Processes for Machine Learning, section 5.4). ``scale`` is a size of the values.
     Of two processes, that of the values (order 5/2) and one of their signs alone (order 3/2, which
     suits a jump from passing to failing), it is the one that mistakes fewer runs when they are left

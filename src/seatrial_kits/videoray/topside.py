@@ -25,7 +25,7 @@ class Pro4Topside(Pro4TopsidePorts):
     """Sends the command block every ``period``, and decodes the replies.
 
     It finds the vehicle, reads its configuration and memory, and drives it (`Station`); 10 Hz is
-    what the vehicle's maker and source 000 have. ``rx`` and ``tx`` are bytes with their times
+    what the vehicle's maker and [Paulino2015] have. ``rx`` and ``tx`` are bytes with their times
     (`seatrial.links.text`), at ``baud``: join them to `Pro4Rov`, or by `SerialGateway` to a real
     vehicle.
 

@@ -1,6 +1,6 @@
 """Root loci of the Mariner against independently computed eigenvalues and Routh's criterion.
 
-Figures of source 002 are those of its figures 6 to 8 and section 4.
+Figures of [Moro1979] are those of its figures 6 to 8 and section 4.
 """
 
 import csv

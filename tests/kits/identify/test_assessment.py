@@ -31,7 +31,7 @@ def kept(**changes):
         ({"mass": 9.35}, [True, True, True, False]),  # total 9.34
         ({"mass": 3.12}, [True, True, True, True]),
         ({"mass": 3.11}, [True, True, True, False]),
-        # Source 000, table 7.4: what it says of surge.
+        # [Paulino2015], table 7.4: what it says of surge.
         ({"thrust": -0.2096, "delay": 35}, [False, False, True, False]),
     ],
 )

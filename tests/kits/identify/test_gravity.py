@@ -1,4 +1,4 @@
-"""Gravity in accelerometers, against readings of source 000 and a rotation matrix."""
+"""Gravity in accelerometers, against readings of [Paulino2015] and a rotation matrix."""
 
 import numpy as np
 import pytest

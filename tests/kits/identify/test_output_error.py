@@ -53,8 +53,8 @@ def test_a_log(case, seed):
     assert found.estimate.delay == case.delay
     assert found.estimate.structure.lag == "none"
     assert (found.by_method["output error"] < 4.0 * LIMITS[case.name]).all()
-    # Source 000's quadratic drag is off by more than a tenth in every log.
-    assert found.by_method["source 000"][1] > 0.1
+    # [Paulino2015]'s quadratic drag is off by more than a tenth in every log.
+    assert found.by_method["[Paulino2015]"][1] > 0.1
 
 
 @pytest.mark.long

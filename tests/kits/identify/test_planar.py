@@ -30,7 +30,7 @@ NOISE = np.array([0.024, 0.016, 0.0034])
 
 
 def integrated(commands):
-    """Return readings (n, 3) without noise: source 000, eq. 5.18, with a lag and a delay."""
+    """Return readings (n, 3) without noise: [Paulino2015], eq. 5.18, with a lag and a delay."""
     m11, m22, m33 = 8.44, TRUTH["mass"], 0.1338
     late = np.vstack([np.zeros((2, 2)), commands])[: len(commands)]
 

@@ -1,4 +1,4 @@
-"""Source 000's method where it must be exact, and where its printed forms are not.
+"""[Paulino2015]'s method where it must be exact, and where its printed forms are not.
 
 Exact derivatives are those of the equations of motion, at random states: nothing is integrated.
 """

@@ -21,7 +21,7 @@ def weighted_least_squares(
     B = ``matrix`` (m by n), tau = ``wanted`` (m), W = diag(``weights``) (m), eps = ``effort``
     (n, positive, so that x is unique). ``low`` is not above ``high``; alike, they fix an x.
 
-    The active-set method of Härkegård (2002) for control allocation (Fossen 2021, ch. 11):
+    The active-set method of Härkegård (2002) for control allocation ([Fossen2021], ch. 11):
     x moves to the least squares of the variables that are free, up to the first bound in its way,
     which becomes active; there, of the active bounds from which the gradient leads inwards, the
     one with the steepest is released. Each step takes no chance: the same numbers give the same x.

@@ -46,7 +46,7 @@ def components(demand: Demand, others: Shares, along: Array, abeam: Array, start
 
         |W (B x - tau)|^2 + eps |x|^2,    a^2 + b^2 <= 1 of each
 
-    (Sørdalen 1997; Fossen 2021, ch. 11): B is constant, so that no direction is singular.
+    (Sørdalen 1997; [Fossen2021], ch. 11): B is constant, so that no direction is singular.
     The circles are met by sequential quadratic programming: axes that are turned by the
     direction of the last solution, from ``start`` (rad), bound the part ahead by 1, and the
     multiplier of that bound, which is the curvature of the circle, weighs the part abeam. The

@@ -12,7 +12,7 @@ class ThrusterAllocation(Component):
 
         port = (X / 2 + N / (2 d)) / E,   starboard = (X / 2 - N / (2 d)) / E,   vertical = Z / E_v
 
-    with thrust linear in the command (source 000, eq. 5.18, with a lever arm); d =
+    with thrust linear in the command ([Paulino2015], eq. 5.18, with a lever arm); d =
     ``lever_arm``, E = ``horizontal_thrust``, E_v = ``vertical_thrust``. Where both do not fit the
     moment comes first and the force gets what is left: a vehicle that cannot turn goes astray.
     X ahead and Z down positive, N; N to starboard positive, N.m; body axes. Static.

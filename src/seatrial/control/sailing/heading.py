@@ -15,7 +15,7 @@ _LEAST_EFFECT = 0.01  # m2/s2: V^2 cos(beta) that the inversion divides by at le
 class SailingHeading(Sampled):
     """Base of heading controllers that command a rudder by the yaw moment it should give.
 
-    **Inversion** (source 001, eqs 3.5 and 3.6, lift of a thin foil C_L = 2 pi alpha). With the
+    **Inversion** ([Silva2018], eqs 3.5 and 3.6, lift of a thin foil C_L = 2 pi alpha). With the
     flow (a, b) at the rudder, beta = atan2(b, a), V^2 = a^2 + b^2:
 
         rudder = wrap(beta - pi) + yaw_moment / (l density area pi V^2 cos(beta))

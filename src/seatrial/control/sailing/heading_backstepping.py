@@ -14,7 +14,7 @@ from .sail_loads import foil_load, sail_place
 class SailingHeadingBackstepping(SailingHeading):
     """Backstepping control of the heading, with the rudder of `SailingHeading`.
 
-    Source 001, eqs 3.13 to 3.33. With e = wrap(heading - heading_wanted), z1 its integral and
+    [Silva2018], eqs 3.13 to 3.33. With e = wrap(heading - heading_wanted), z1 its integral and
     the rate of the heading taken for r:
 
         d1 = -K_i z1,  z2 = e - d1,  d1' = -K_i e

@@ -15,7 +15,7 @@ class SailingHeadingPid(SailingHeading):
         e = wrap(heading_wanted - heading),  I_k = I_(k-1) + K_i e_k period
         yaw_moment = K_p e + I - K_d r cos(heel)
 
-    Source 001, eq. 3.7, with the rate of the heading for its derivative. I grows before it is
+    [Silva2018], eq. 3.7, with the rate of the heading for its derivative. I grows before it is
     used, and not at an instant after one at which the rudder was at its limit; it is kept as a
     moment, so that a new K_i moves what comes and not what was found. The gains are the
     source's: poles at 0.76 rad/s with damping 0.6, for an inertia of 28.54 kg m2 and no

@@ -18,7 +18,7 @@ class SailingNavigation(Sampled):
         wind = V + (c a - s b / cos(heel), s a + c b / cos(heel)),   (a, b) = V_aw (cos, sin) angle
 
     with c, s of the heading, V the velocity over ground (``velocity_n``), V_aw and angle the
-    apparent wind and where it blows to from the bow; source 001, eqs 2.3 and 2.5, which have
+    apparent wind and where it blows to from the bow; [Silva2018], eqs 2.3 and 2.5, which have
     no heave: velocity and wind are taken to lie in the horizontal plane. The true wind passes a
     first-order lag of ``time_constant``, from its first value on; without a valid velocity it
     stays as it is, 0 at first. (p, r) are the gyro's.

@@ -18,7 +18,7 @@ _DEG = math.radians(1.0)
 class SailControl(Sampled):
     """Controller of sail and flap: greatest drive, on the right side, with a limit on heel.
 
-    **Side** (source 001, eqs 3.36 and 3.37). With d = heading - direction the wind blows to, in
+    **Side** ([Silva2018], eqs 3.36 and 3.37). With d = heading - direction the wind blows to, in
     [0, 360) deg: boom to port for 0 < d < 180, else to starboard. Within ``hysteresis`` of dead
     downwind (d = 0) it stays where it was: 0 is the source's rule, with which the sail chatters
     there.

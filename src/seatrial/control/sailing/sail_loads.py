@@ -18,7 +18,7 @@ def foil_load(
 ) -> tuple[float, float, float, float]:
     """Return the load (X, Y, K, N) of a foil whose axis is vertical in body axes, N and N.m.
 
-    Source 001, eqs 2.15 to 2.29 for sail and keel alike: with the flow (a, b), m/s, beta =
+    [Silva2018], eqs 2.15 to 2.29 for sail and keel alike: with the flow (a, b), m/s, beta =
     atan2(b, a) and alpha = beta - angle + pi,
 
         (X, Y) = 0.5 density area V^2 (C_D (cos beta, sin beta) + C_L (-sin beta, cos beta))
@@ -39,7 +39,7 @@ def sail_place(axis: Sequence[float], arm: float, angle: float) -> tuple[float, 
     """Return the centre of effort (x, y, z) of the sail at ``angle``, body axes, m.
 
     ``axis`` is (x, z) of the sail's axis, ``arm`` the distance of the centre of effort behind
-    it: source 001, eq. 2.18.
+    it: [Silva2018], eq. 2.18.
     """
     x, z = axis
     return x - arm * math.cos(angle), -arm * math.sin(angle), z

@@ -36,7 +36,7 @@ class Setting(NamedTuple):
 def setting(table: FoilTable, beta: float, angle: float, flap: float) -> Setting:
     """Return what a sail ``angle`` and ``flap``, rad, give in a wind that blows to ``beta``.
 
-        alpha = beta - angle + pi                        source 001, eq. 2.20
+        alpha = beta - angle + pi                        [Silva2018], eq. 2.20
         drive = -C_L sin(beta) + C_D cos(beta)           eq. 3.34
         side  = C_L cos(beta) + C_D sin(beta)            eq. 2.21
 

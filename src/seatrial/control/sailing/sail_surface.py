@@ -19,7 +19,7 @@ _ROUNDS = 4
 def smooth_setting(table: FoilTable, beta: float, least: float, most: float) -> Setting:
     """Return the setting with the greatest drive of the surfaces, and what the sail then gives.
 
-    C_L and C_D are cubic splines in alpha and flap through the points of the table (source 001,
+    C_L and C_D are cubic splines in alpha and flap through the points of the table ([Silva2018],
     section 3.2, proposes an interpolation whose derivative is 0 where the drive is greatest). The
     maximum is looked for with ``least`` <= angle <= ``most``, rad, on a grid that narrows down
     four times, to 0.02 deg. The forces of the result are those of the sail, which is linear between

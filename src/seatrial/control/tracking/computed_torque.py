@@ -20,7 +20,7 @@ class ComputedTorque(VesselTracking):
     The thrusts act on u' and r' directly, so that this linearises both exactly, whatever U
     and R; sway follows, damped by d22. The integrals grow by e ``period`` after each instant at
     which no thruster is at its limit, and a constant force ahead or moment leaves no error.
-    Ours: source 000 has the law of `FlatTracking`, which this one replaces.
+    Ours: [Paulino2015] has the law of `FlatTracking`, which this one replaces.
 
     A force abeam cannot be balanced, and v stays off by Y / d22. A sensor of v or r that errs
     is believed: v enters the product m22 v r, and an error of 1 m/s in it makes a light

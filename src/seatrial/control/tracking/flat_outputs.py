@@ -1,6 +1,6 @@
 """Flat outputs of linear systems x' = A(t) x + B(t) tau, and tracking control by them.
 
-Source 000, chapter 4. A flat output F is as many functions of the state as there are inputs,
+[Paulino2015], chapter 4. A flat output F is as many functions of the state as there are inputs,
 from which state and inputs follow by differentiation alone. n states, m inputs; matrices are
 CasADi expressions, and ``derivative`` returns d/dt of one (zeros for constant matrices).
 """
@@ -22,7 +22,7 @@ def kronecker_indices(A: Vector, B: Vector) -> tuple[int, ...]:
     """Return how many columns b_j, A b_j, A^2 b_j, ... of each input j make a basis.
 
     A (n, n), B (n, m), constant numbers. Input by input, as many as are linearly independent of
-    those before (source 000, algorithm 1, corrected). Their sum is n if the system is
+    those before ([Paulino2015], algorithm 1, corrected). Their sum is n if the system is
     controllable. The first inputs get the most, and other indices may serve as well: each
     thruster of a `SurfaceVessel` alone moves all of nu, so that these are (3, 0).
     """
@@ -46,7 +46,7 @@ def kronecker_indices(A: Vector, B: Vector) -> tuple[int, ...]:
 def controllability_matrix(A: Any, B: Any, indices: Sequence[int], derivative: Derivative) -> Any:
     """Return C_K (n, n): per input j the columns b_j, (A - d/dt) b_j, ..., indices[j] of them.
 
-    Source 000, eqs 4.11 and 4.13, corrected: the first column of a group is that of B. Its
+    [Paulino2015], eqs 4.11 and 4.13, corrected: the first column of a group is that of B. Its
     binomial form (4.14) holds for constant A only. The indices must add up to n.
     """
     columns = []
@@ -61,7 +61,7 @@ def controllability_matrix(A: Any, B: Any, indices: Sequence[int], derivative: D
 def flat_output(C_K: Any, indices: Sequence[int], scaling: Sequence[Any]) -> Any:
     """Return the matrix (m, n) of F = alpha S C_K^-1 x, alpha the diagonal of ``scaling``.
 
-    S selects the last column of each group of C_K (source 000, eq. 4.15 and algorithm 2). F_i
+    S selects the last column of each group of C_K ([Paulino2015], eq. 4.15 and algorithm 2). F_i
     and its derivatives below order indices[i] do not depend on the inputs.
     """
     inverse = ca.inv(C_K)
@@ -84,7 +84,7 @@ def tracking_gain(
 
         F_i^(k) + gains[i][k - 1] F_i^(k - 1) + ... + gains[i][0] F_i = 0,   k = indices[i]
 
-    Source 000, eqs 4.16 to 4.23. With g_0 = row i of ``F`` and g_(j + 1) = g_j' + g_j A,
+    [Paulino2015], eqs 4.16 to 4.23. With g_0 = row i of ``F`` and g_(j + 1) = g_j' + g_j A,
     F_i^(j) = g_j x below order k, and F_i^(k) = g_k x + g_(k - 1) B tau.
     """
     wanted, effect = [], []

@@ -21,7 +21,7 @@ _SCALINGS = ("constant", "determinant")
 
 
 class FlatTracking(VesselTracking):
-    """Law of source 000: flat outputs of the vessel linearised along its trajectory.
+    """Law of [Paulino2015]: flat outputs of the vessel linearised along its trajectory.
 
     With A, B the Jacobians of the vessel at (U, V, R), dx = nu - (U, V, R), Kronecker indices
     (1, 2) and C_K = (b1, b2, A b2), the flat outputs are F = alpha S C_K^-1 dx (4.15):
@@ -101,7 +101,7 @@ def vessel_jacobians(nu: Any, p: SimpleNamespace) -> tuple[Any, Any]:
     """Return A (3, 3) and B (3, 2) of a `SurfaceVessel` at nu = (u, v, r), CasADi expressions.
 
     ``p`` has the parameters of the vessel: mass, damping (3,), thrust (2,), lever_arm and
-    yaw_coupling_sign. The Jacobian of source 000, eq. 5.18, with respect to nu and commands,
+    yaw_coupling_sign. The Jacobian of [Paulino2015], eq. 5.18, with respect to nu and commands,
     not the matrix of its eq. 6.5, which is that of a product A(x) x.
     """
     u, v, r = ca.vertsplit(nu)

@@ -11,7 +11,7 @@ from ...physics.craft.kinematics import to_body
 
 
 class IntegratedVelocity(Sampled):
-    """Estimate u, v and r as source 000, section 6.2, has it: integrate, and take differences.
+    """Estimate u, v and r as [Paulino2015], section 6.2, has it: integrate, and take differences.
 
     At each sample, with the specific force f, the attitude and the offset b that is taken off,
 

@@ -18,7 +18,7 @@ class NominalTrajectory(Sampled):
     """Nominal velocities (U, V, R) of a `SurfaceVessel` and the commands that give them.
 
     Surge U and yaw rate R each have a profile: "constant", or "polynomial", which rises from 0
-    to the value within ``duration`` T and is held from then on (source 000, section 6.1):
+    to the value within ``duration`` T and is held from then on ([Paulino2015], section 6.1):
 
         value (10 x^3 - 15 x^4 + 6 x^5),   x = t / T,   t from the start of the run
 

@@ -50,7 +50,7 @@ class Profile:
     """A velocity over time: constant, or from rest to ``value`` within ``duration``, s.
 
     The latter is value (10 x^3 - 15 x^4 + 6 x^5) with x = t / duration, held afterwards: first
-    and second derivatives vanish at both ends (source 000, section 6.1, for 240 s). A duration
+    and second derivatives vanish at both ends ([Paulino2015], section 6.1, for 240 s). A duration
     of 0 stands for a constant.
     """
 
@@ -83,7 +83,7 @@ def nominal_motion(
 ) -> list[Nominal]:
     """Return the nominal motion every ``period``, s, until it is steady.
 
-    Surge U and yaw rate R are given; sway follows, corrected from source 000, eq. 6.1:
+    Surge U and yaw rate R are given; sway follows, corrected from [Paulino2015], eq. 6.1:
 
         m22 V' + d22 V + m11 U R = 0,   V(0) = -m11 U R / d22 at t = 0
 

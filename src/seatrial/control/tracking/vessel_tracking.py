@@ -18,7 +18,7 @@ class VesselTracking(NominalTrajectory):
     surge + yaw and surge - yaw: (t1 + t2) / 2 and (t1 - t2) / 2.
 
     ``nu_bias`` is added to ``nu`` before the law sees it: an error of the sensors, set by a
-    trial to see what it does. Source 000, table 8.1, has its disturbances there and not in the
+    trial to see what it does. [Paulino2015], table 8.1, has its disturbances there and not in the
     forces.
     """
 

@@ -20,7 +20,7 @@ class ForceActuator(LaggedActuator):
     Failures are those of `Actuator`, for all three axes together: a wrong one has half of its
     forces; a slow one has ten times its lag, and at least 1 s.
 
-    Defaults are the ideal thrusters of source 003, with what it calls 100 % as capacity.
+    Defaults are the ideal thrusters of [ShipScript], with what it calls 100 % as capacity.
 
     Not modelled: single thrusters and how a demand is allocated to them; the capacity of one
     axis does not depend on what the others use.

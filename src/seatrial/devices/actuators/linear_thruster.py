@@ -22,7 +22,7 @@ class LinearThruster(Actuator):
     ahead; it never reacts to the command at the same instant.
 
     Outside the dead band F is on the line through the origin, so that it jumps at the edge.
-    Linear in beta as source 000 has it (5.18), which tried a quadratic law too and found that
+    Linear in beta as [Paulino2015] has it (5.18), which tried a quadratic law too and found that
     one worse; the delay is that of its eq. 5.15.
 
     Failures are those of `Actuator`. Where no command arrives it is the motor that stands still:

@@ -19,7 +19,7 @@ class Propulsion(FixedThrusters):
     thrusts at the same instant.
 
     Two thrusters ahead at y = -d and +d, z = z_T give N = (T_1 - T_2) d, so that the port one
-    turns the bow to starboard, and M = +z_T (T_1 + T_2). (Source 004, eq. 57, has both with the
+    turns the bow to starboard, and M = +z_T (T_1 + T_2). ([Timm2026], eq. 57, has both with the
     opposite sign, which is not r x F in axes with z down.)
 
     Raises InputError at the start for a direction that is neither zero nor of length 1 within

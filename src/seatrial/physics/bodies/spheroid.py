@@ -19,7 +19,7 @@ _TERMS = 20
 
 @dataclass(frozen=True)
 class Lamb:
-    """Lamb's factors (Hydrodynamics, 6th ed., art. 114 and 115; Fossen 2021, section 8.4.2)."""
+    """Lamb's factors (Hydrodynamics, 6th ed., art. 114 and 115; [Fossen2021], section 8.4.2)."""
 
     k1: float
     """Added mass along the axis, of the displaced mass."""

@@ -61,7 +61,7 @@ class Slopes(NamedTuple):
 
 @dataclass(frozen=True)
 class Cable:
-    """A cable of N equal segments: source 000, eqs 3.46 to 3.53, corrected.
+    """A cable of N equal segments: [Paulino2015], eqs 3.46 to 3.53, corrected.
 
     With R = x_i - x_(i-1), Ls = |R|, t = R / Ls, l0 = L / N, k = EA / l0:
 

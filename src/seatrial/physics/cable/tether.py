@@ -27,7 +27,7 @@ _ACTING = ("top_position", "top_velocity", "bottom_position", "bottom_velocity",
 class Tether(MeetsWaves, MeetsCurrent):
     """A cable in a current between two ends that others move: N segments, lumped masses.
 
-    Source 000, eqs 3.46 to 3.53, corrected; the equations are those of `Cable`. Node 0 is the
+    [Paulino2015], eqs 3.46 to 3.53, corrected; the equations are those of `Cable`. Node 0 is the
     top (at the surface), node N the bottom (at the vehicle). All vectors are in {n}.
 
     **Ends.** An end is at its position input, and goes on with its velocity input until

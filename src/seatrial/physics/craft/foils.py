@@ -16,7 +16,7 @@ def foil_load(
 ) -> Any:
     """Return the load (X, Y, K, N) of a foil whose axis is vertical in body axes, N and N.m.
 
-    One law for sail, keel and rudder: source 001, eqs 2.15, 2.16, 2.20, 2.21, 2.25, 2.28 and
+    One law for sail, keel and rudder: [Silva2018], eqs 2.15, 2.16, 2.20, 2.21, 2.25, 2.28 and
     2.29, and 2.24 with the sign that 3.5 gives it. With flow (a, b) in body axes, beta =
     atan2(b, a) the direction it goes to and the angle delta:
 
@@ -39,7 +39,7 @@ def foil_load(
 
 
 def flow_at(place: Any, fluid: Any, nu: Any) -> Any:
-    """Return the flow (a, b) at ``place`` of the boat, body axes, m/s: source 001, eq. 2.17.
+    """Return the flow (a, b) at ``place`` of the boat, body axes, m/s: [Silva2018], eq. 2.17.
 
     ``fluid`` is the velocity of air or water over ground in body axes, nu = (u, v, p, r).
     """

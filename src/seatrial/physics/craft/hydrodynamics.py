@@ -40,7 +40,7 @@ def restoring(c: Context) -> Any:
     equilibrium, n the vertical in {b}, r_F = ``center_of_flotation``:
 
     - "surface-linear": Z = -k z, K = -W GM_T sin(phi), M = -W GM_L sin(theta), in body axes
-      (source 004, eqs 26 and 41, with the heave stiffness that eq. 41 omits). With r_F the
+      ([Timm2026], eqs 26 and 41, with the heave stiffness that eq. 41 omits). With r_F the
       force is Z = -k (z + y_F phi - x_F theta) at r_F.
     - "surface-conservative": force -k z n, moment n x (W GM_L n1, W GM_T n2, 0). Its potential
       is k z^2 / 2 + W (GM_L n1^2 + GM_T n2^2) / 2; it agrees with the former to first order
@@ -51,7 +51,7 @@ def restoring(c: Context) -> Any:
       capsize in the place of GM_T (`large_angles`): potential W GM_L n1^2 / 2 + W integral of GZ,
       phi = atan2(n2, n3), its moment about x at level pitch -W GZ(phi).
     - "submerged": weight W n at the CG, buoyancy -B n at the centre of buoyancy: force
-      (W - B) n, moment (r_G W - r_B B) x n (Fossen; source 000, eqs 3.25 to 3.28).
+      (W - B) n, moment (r_G W - r_B B) x n (Fossen; [Paulino2015], eqs 3.25 to 3.28).
     - "floating": between the two, by eight cells (`hull_points.floating`).
 
     Limits: in the surface forms the moment of GM is a couple, and the waterplane is that of
@@ -91,10 +91,10 @@ def coriolis(c: Context) -> Any:
     """Return -C(nu_r) nu_r in the form that ``coriolis`` names.
 
     C nu = (omega x h1, omega x h2 + v x h1) of the momentum h = (h1, h2), v and omega those of
-    nu_r: C = [[0, -S(h1)], [-S(h1), -S(h2)]] (source 004, eq. 19; 000, eq. 3.24).
+    nu_r: C = [[0, -S(h1)], [-S(h1), -S(h2)]] ([Timm2026], eq. 19; [Paulino2015], eq. 3.24).
 
     - "full": h = M nu_r, which conserves momentum.
-    - "diagonal": h = diag(M) nu_r, the form of source 004, eq. 56, which loses the coupling
+    - "diagonal": h = diag(M) nu_r, the form of [Timm2026], eq. 56, which loses the coupling
       terms of M.
     - "without-munk": as "full", less v x A v, the moment of the translational added mass A on
       a body in steady oblique translation (Munk). Does not conserve energy, and is no flow's: some
@@ -128,9 +128,9 @@ def coriolis_load(h: Any, nu: Any) -> Any:
 def damping(c: Context) -> Any:
     """Return linear and quadratic drag, axis by axis: -(linear + quadratic |nu_r|) nu_r.
 
-    Source 004, eq. 49; 000, eq. 3.38. Either is left out by coefficients of 0. Limits: no axis
-    damps another; the drag of a component does not know the whole speed. Of a hull that floats,
-    the share under water is damped.
+    [Timm2026], eq. 49; [Paulino2015], eq. 3.38. Either is left out by coefficients of 0. Limits: no
+    axis damps another; the drag of a component does not know the whole speed. Of a hull that
+    floats, the share under water is damped.
     """
     p = c.parameters
     linear = ca.vertcat(p.linear_damping_force, p.linear_damping_moment)

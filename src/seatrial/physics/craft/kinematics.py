@@ -2,7 +2,7 @@
 
 Frames: {n} x north, y east, z down; {b} x bow, y starboard, z down. An attitude is
 (phi, theta, psi): roll, pitch and yaw in rad, of the rotation psi about z, then theta about y,
-then phi about x (Fossen; source 004, eq. 10). phi > 0: starboard down; theta > 0: bow up;
+then phi about x (Fossen; [Timm2026], eq. 10). phi > 0: starboard down; theta > 0: bow up;
 psi > 0: clockwise seen from above.
 
 For components that step in Python: plain floats. Equations of motion use `symbolic`.

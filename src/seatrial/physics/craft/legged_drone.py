@@ -32,7 +32,7 @@ class LeggedDrone(Plant):
     **Legs.** The deck is the rectangle ``deck_size`` in the craft's axes, at the height of ``pad``.
     With penetration delta of a foot below it, and v_t its velocity along the deck, against it:
 
-        N = k delta max(0, 1 + d delta')           Hunt and Crossley 1975, exponent 1
+        N = k delta max(0, 1 + d delta')           [Hunt1975], exponent 1
         F_t = -mu N v_t / sqrt(|v_t|^2 + v_s^2)    Coulomb, regularised by ``slip_speed``
 
     k = ``stiffness`` and d = ``damping`` of one leg. ``force`` and ``moment`` on the craft are

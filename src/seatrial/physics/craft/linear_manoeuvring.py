@@ -11,7 +11,7 @@ from ...model.expressions import Vector
 
 @dataclass(frozen=True)
 class LinearDerivatives:
-    """Dimensionless derivatives in sway and yaw about midships (source 002, eqs 4 and 5).
+    """Dimensionless derivatives in sway and yaw about midships ([Moro1979], eqs 4 and 5).
 
     x forward, y starboard, r clockwise from above; a positive ``delta`` gives Y > 0. Y_r and N_r
     are the hull's own: some tables, that of Chislett and Stroem-Tejsen for one, list Y_r - m
@@ -36,7 +36,7 @@ class LinearDerivatives:
 def linear_coefficients(d: LinearDerivatives) -> tuple[Vector, Vector]:
     """Return A* (2, 2) and B* (2,), with d(v, r)/dt = A* (v, r) + B* delta, dimensionless.
 
-    Source 002, eqs 6 and 7, in closed form; its A2* x1 in eq. 6 must be A1* x1, dots are lost
+    [Moro1979], eqs 6 and 7, in closed form; its A2* x1 in eq. 6 must be A1* x1, dots are lost
     in A3*, A4* and D, and B2* is printed with Y_v, N_v in the place of Y_delta, N_delta.
     What a `ManoeuvringShip` takes as ``state_matrix`` and ``rudder_vector``.
 

@@ -42,17 +42,17 @@ class ManoeuvringShip(ThreeDofCraft):
     yaw, rad/s, in {b} (x bow, y starboard, z down). eta' = R(psi) nu.
 
     ``rudder`` is the angle of its blade, trailing edge to port positive: a positive angle gives
-    Y > 0 and N < 0 and turns the ship to port, as source 002 has it.
+    Y > 0 and N < 0 and turns the ship to port, as [Moro1979] has it.
 
     Lengths are made dimensionless with ``length`` L, speeds with U, times with L / U:
 
-    - ``model`` = "linear" (source 002, eqs 4 to 7): u' = 0, U = ``speed``, and with A* and B*
+    - ``model`` = "linear" ([Moro1979], eqs 4 to 7): u' = 0, U = ``speed``, and with A* and B*
       from ``state_matrix`` and ``rudder_vector``
 
           (v', r')* = A* (v*, r*) + B* delta
 
       Surge is constant, and the start value of u must be ``speed``.
-    - "cubic" (Chislett and Stroem-Tejsen 1965): U = sqrt(u^2 + v^2), u* = (u - speed) / U,
+    - "cubic" ([Chislett1965]): U = sqrt(u^2 + v^2), u* = (u - speed) / U,
       and X, Y, N are the polynomials of u*, v*, r* and delta that their ports list, where the
       inertial terms of a turning ship are part of the coefficients Y.r, N.r, X.rr and X.rv:
 
@@ -155,7 +155,7 @@ class ManoeuvringShip(ThreeDofCraft):
 
 
 def _linear(nu: Any, rudder: Any, p: SimpleNamespace) -> Any:
-    """Return (u', v', r'), SI: source 002, eqs 6 and 7."""
+    """Return (u', v', r'), SI: [Moro1979], eqs 6 and 7."""
     per_second = p.speed / p.length
     scale = ca.vertcat(p.speed, per_second)
     A = ca.reshape(p.state_matrix, 2, 2).T
@@ -163,7 +163,7 @@ def _linear(nu: Any, rudder: Any, p: SimpleNamespace) -> Any:
 
 
 def _cubic(nu: Any, rudder: Any, p: SimpleNamespace) -> Any:
-    """Return (u', v', r'), SI: Chislett and Stroem-Tejsen 1965."""
+    """Return (u', v', r'), SI: [Chislett1965]."""
     U = ca.sqrt(nu[0] ** 2 + nu[1] ** 2)
     scale = ca.vertcat(U, U, U / p.length)
     u, v, r = ca.vertsplit((nu - ca.vertcat(p.speed, 0, 0)) / scale)

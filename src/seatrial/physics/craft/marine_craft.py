@@ -29,7 +29,7 @@ class MarineCraft(WindySeaway, SixDofCraft):
 
     eta = (position, attitude): the body origin in north-east-down, m, and the Euler angles,
     rad; nu = (u, v, w, p, q, r): velocity of the body origin over ground and angular rate, in
-    body axes (x bow, y starboard, z down); eta' = J(eta) nu. Source 004, eqs 10, 11 and 36.
+    body axes (x bow, y starboard, z down); eta' = J(eta) nu. [Timm2026], eqs 10, 11 and 36.
     Singular at theta = +-90 degrees.
 
     **Sea.** With a surface form of restoring, the waves of a trial act by ``wave-loads`` on the

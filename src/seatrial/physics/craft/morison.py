@@ -28,7 +28,7 @@ class Morison(Component):
 def morison(c: Context) -> Any:
     """Return the drag -1/2 rho C_d S |v_r| v_r at the body origin, axis by axis.
 
-    Source 000, eq. 3.39, with its matrices: C_d is full, so that a velocity along one axis may
+    [Paulino2015], eq. 3.39, with its matrices: C_d is full, so that a velocity along one axis may
     pull along another (cross-damping); S is diagonal. Its inertia, C_m rho V (v_c' - v'), is that
     of ``added_mass``, in whose place C_m rho V stands: M nu_r' of `six_dof` has it, with the
     pressure gradient of moving water beside it, which 3.39 leaves out for a body in it.

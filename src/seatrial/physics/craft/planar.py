@@ -174,7 +174,7 @@ def water_outputs(eta: Any, nu_r: Any, u: SimpleNamespace, p: SimpleNamespace) -
 def kinematics(eta: Any, nu: Any) -> Any:
     """Return d(eta)/dt, in the order of eta: (x', y') = J (u, v), phi' = p, psi' = r cos(phi).
 
-    Source 001, eq. 2.3; with phi = 0 Fossen's three degrees of freedom.
+    [Silva2018], eq. 2.3; with phi = 0 Fossen's three degrees of freedom.
     """
     _x, _y, phi, psi = _four(eta)
     u, v, p, r = _four(nu)
@@ -184,7 +184,7 @@ def kinematics(eta: Any, nu: Any) -> Any:
 
 
 def horizontal_rotation(phi: Any, psi: Any) -> Any:
-    """Return J (2, 2), with (north, east) = J (u, v): source 001, eq. 2.5.
+    """Return J (2, 2), with (north, east) = J (u, v): [Silva2018], eq. 2.5.
 
     J^T takes a horizontal velocity into body axes.
     """

@@ -41,7 +41,7 @@ class Sailboat(PlanarCraft):
         eta' = J(phi, psi) nu
         M nu' = -C_RB(nu) nu - C_A(nu_r) nu_r - D nu_r - g(phi) + S + K + R + T + M_A nu_c'
 
-    Source 001, eqs 2.2 to 2.29, in the corrected form that docs/vehicles/gloria.md lists.
+    [Silva2018], eqs 2.2 to 2.29, in the corrected form that docs/vehicles/gloria.md lists.
     eta = (x, y, phi, psi): body origin, which is the CG, in {n} (x north, y east), m; heel,
     starboard down, and heading, clockwise from north, rad. nu = (u, v, p, r): velocity of the
     origin over ground and rates in {b} (x bow, y starboard, z down, heeling with the boat).
@@ -245,12 +245,12 @@ class Sailboat(PlanarCraft):
 
 
 def _rigid_body(p: SimpleNamespace) -> Any:
-    """Return M_RB (4, 4): source 001, eq. 2.8."""
+    """Return M_RB (4, 4): [Silva2018], eq. 2.8."""
     return ca.diag(ca.vertcat(p.mass, p.mass, p.inertia))
 
 
 def _added_mass(p: SimpleNamespace) -> Any:
-    """Return M_A (4, 4): source 001, eq. 2.10."""
+    """Return M_A (4, 4): [Silva2018], eq. 2.10."""
     return -ca.vertcat(
         ca.horzcat(p.X_udot, 0, 0, 0),
         ca.horzcat(0, p.Y_vdot, 0, p.Y_rdot),
@@ -260,13 +260,13 @@ def _added_mass(p: SimpleNamespace) -> Any:
 
 
 def _coriolis(h: Any, nu: Any) -> Any:
-    """Return C nu (4,) of the momentum h = (h_u, h_v): source 001, eqs 2.11 and 2.12."""
+    """Return C nu (4,) of the momentum h = (h_u, h_v): [Silva2018], eqs 2.11 and 2.12."""
     X, Y, N = ca.vertsplit(planar_coriolis(h, nu[[0, 1, 3]]))
     return ca.vertcat(X, Y, 0, N)
 
 
 def _hull(phi: Any, nu: Any, nu_r: Any, p: SimpleNamespace) -> Any:
-    """Return -C_RB nu - D nu_r - g (4,): source 001, eqs 2.11, 2.13 and 2.14."""
+    """Return -C_RB nu - D nu_r - g (4,): [Silva2018], eqs 2.11, 2.13 and 2.14."""
     u_r, v_r, roll, r = ca.vertsplit(nu_r)
     damping = ca.vertcat(
         p.X_u * u_r, p.Y_v * v_r + p.Y_r * r, p.K_p * roll, p.N_v * v_r + p.N_r * r

@@ -50,7 +50,7 @@ _TERMS: dict[str, Term] = {**TERMS, RADIATION: radiation}
 
 
 class SeakeepingCraft(MarineCraft):
-    """`MarineCraft` with the frequency-dependent hydrodynamics of a panel code (Cummins 1962).
+    """`MarineCraft` with the frequency-dependent hydrodynamics of a panel code ([Cummins1962]).
 
         (M_RB + A_inf) nu_r' + integral of K(t - s) nu_r(s) ds = tau + the terms
 

@@ -58,7 +58,7 @@ def body_lift(c: Context) -> Any:
 def fading_damping(c: Context) -> Any:
     """Return -d exp(-k U) (u, v) in surge and sway; d, k are ``fading_damping_force``, ``_rate``.
 
-    u, v and U = |(u, v, w)| of nu_r (Fossen, 2021: linear damping that leaves the field to lift
+    u, v and U = |(u, v, w)| of nu_r ([Fossen2021]: linear damping that leaves the field to lift
     and quadratic drag as the craft gathers speed). Of a hull that floats, the share under water
     is damped.
     """

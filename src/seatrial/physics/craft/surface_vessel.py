@@ -31,7 +31,7 @@ _DAMPINGS = ("N.s/m", "N.s/m", "N.m.s/rad")
 class SurfaceVessel(LoadedCraft):
     """Vessel in surge, sway and yaw that two thrusters ahead move: no force in sway.
 
-    Source 000, eqs 5.17 to 5.19 and 6.5. eta = (x, y, psi): body origin in {n} (x north,
+    [Paulino2015], eqs 5.17 to 5.19 and 6.5. eta = (x, y, psi): body origin in {n} (x north,
     y east), m, and heading, clockwise from north, rad; nu = (u, v, r): velocity of the origin
     over ground, m/s, and rate of yaw, rad/s, in {b} (x bow, y starboard, z down). With
     ``mass`` (m11, m22, m33), added mass included, and ``damping`` (d11, d22, d33):

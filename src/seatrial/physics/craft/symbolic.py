@@ -30,6 +30,6 @@ def euler_rate_matrix(attitude: Any) -> Any:
 
 
 def skew(a: Any) -> Any:
-    """Return S (3, 3) of a CasADi column, with S(a) b = a x b (source 004, eq. 20)."""
+    """Return S (3, 3) of a CasADi column, with S(a) b = a x b ([Timm2026], eq. 20)."""
     x, y, z = ca.vertsplit(a)
     return ca.vertcat(ca.horzcat(0, -z, y), ca.horzcat(z, 0, -x), ca.horzcat(-y, x, 0))

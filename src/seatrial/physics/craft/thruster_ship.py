@@ -32,7 +32,7 @@ _INERTIAS = ("mass", "inertia", "center_of_gravity", "X_udot", "Y_vdot", "Y_rdot
 class ThrusterShip(LoadedCraft):
     """Ship in surge, sway and yaw under thrusters: M nu' + C(nu) nu = tau, eta' = R(psi) nu.
 
-    Source 003. eta = (x, y, psi): body origin in {n} (x north, y east), m, and heading,
+    [ShipScript]. eta = (x, y, psi): body origin in {n} (x north, y east), m, and heading,
     clockwise from north, rad; nu = (u, v, r): velocity of the origin over ground, m/s, and rate
     of yaw, rad/s, in {b} (x bow, y starboard, z down). With A1 = m - X_udot, A2 = m - Y_vdot,
     A6 = I_zz - N_rdot and c = m x_G - Y_rdot:
@@ -118,7 +118,7 @@ class ThrusterShip(LoadedCraft):
 
 
 def _mass_matrix(p: SimpleNamespace) -> Any:
-    """Return M from CasADi numbers or symbols: source 003, left-hand sides."""
+    """Return M from CasADi numbers or symbols: [ShipScript], left-hand sides."""
     c = p.mass * p.center_of_gravity - p.Y_rdot
     return ca.vertcat(
         ca.horzcat(p.mass - p.X_udot, 0, 0),

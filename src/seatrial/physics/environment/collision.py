@@ -22,7 +22,7 @@ class Collision(Component):
     delta how far the capsules overlap where their axes are nearest, n the unit vector between
     those places, v the difference of the velocities of the two hulls there:
 
-        N = k delta max(0, 1 + d delta')           Hunt and Crossley 1975, exponent 1
+        N = k delta max(0, 1 + d delta')           [Hunt1975], exponent 1
         F_t = -mu N v_t / sqrt(|v_t|^2 + v_s^2)    Coulomb, regularised by ``slip_speed``
 
     Both craft have the same force at the same place with opposite signs: momentum is conserved.

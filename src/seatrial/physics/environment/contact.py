@@ -23,7 +23,7 @@ class Contact(OverSeabed, Component):
     about ``box_center``. Of each, with penetration delta, m, and its rate, m/s, along the normal
     out of what is nearest (`seabed.scene.Scene.nearest`):
 
-        N = k delta max(0, 1 + d delta')           Hunt and Crossley 1975, exponent 1
+        N = k delta max(0, 1 + d delta')           [Hunt1975], exponent 1
         F_t = -mu N v_t / sqrt(|v_t|^2 + v_s^2)    Coulomb, regularised by ``slip_speed``
 
     with k = ``stiffness`` and d = ``damping`` of one corner. It never pulls. A craft of weight W

@@ -17,7 +17,7 @@ class DeckLimits(Component):
         f = a + alpha x r + omega x (omega x r) - R^T g,    r = pad, m/s2
 
     the gear presses the drone with m f: N = -m f_z across the deck, F = m (f_x, f_y) along it.
-    To first order F_y = -m (g sin(phi) + phi'' z_pad), source 004, eq. 77. The drone slides where
+    To first order F_y = -m (g sin(phi) + phi'' z_pad), [Timm2026], eq. 77. The drone slides where
     |F| > friction N, and tips where |F| c > b N, with c = ``height`` of its CG above the deck and
     b = ``half_breadth`` of its legs: ``sliding`` and ``tipping`` are these shares of the limits,
     1 at the limit. Off the deck (``on_deck`` false, or N <= 0: the deck falls away) all are 0.

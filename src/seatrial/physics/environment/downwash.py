@@ -18,7 +18,7 @@ class Downwash(Component):
     gravity g, height of the rotors z_h, upward acceleration a_z:
 
     - thrust T_h = m (g + a_z), ground effect C_GE = 1 + k0 exp(-ground_effect_decay z_h / D_r)
-      (source 004, eqs 59 and 61; D_r = ``rotor_diameter``);
+      ([Timm2026], eqs 59 and 61; D_r = ``rotor_diameter``);
     - the share of the wake that meets the deck, kappa = exp(-(z_h / wake_length)^2). It is an
       addition to the source, whose C_GE tends to 1 and would leave the load for ever.
 
@@ -30,7 +30,7 @@ class Downwash(Component):
     from ``lift_off_time`` on z_h = climb_acceleration (t - lift_off_time)^2 / 2 and
     Fz = kappa C_GE T_h.
 
-    ``load_model`` = "source" is that (source 004, section 3.1.6). "consistent" counts no force
+    ``load_model`` = "source" is that ([Timm2026], section 3.1.6). "consistent" counts no force
     twice: while the thrust grows the landing gear gives back what the wake adds, so Fz = m g
     until lift-off, and no wake presses with more than its thrust (C_GE = 1).
 
@@ -126,7 +126,7 @@ class Downwash(Component):
         return force, cross(self.pad, force)
 
     def ground_effect(self, height: float) -> float:
-        """Return C_GE of the rotors at ``height`` (m) above the deck (source 004, eq. 61)."""
+        """Return C_GE of the rotors at ``height`` (m) above the deck ([Timm2026], eq. 61)."""
         decay = math.exp(-self.ground_effect_decay * height / self.rotor_diameter)
         return float(1.0 + self.k0 * decay)
 

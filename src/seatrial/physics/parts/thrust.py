@@ -81,8 +81,8 @@ def azimuth(c: Context, drive: Drive) -> Push:
 def tunnel(c: Context, drive: Drive) -> Push:
     """Thruster in a tunnel: T = T_0 (1 - min(1, (u / u_0)^2)), u the speed ahead at its place.
 
-    u_0 is the ``fading_speed``, 0 for no loss (form of the measurements of Chislett and
-    Bjorheden, 1966). The shaft's power does not fade.
+    u_0 is the ``fading_speed``, 0 for no loss (form of the measurements of
+    [Chislett1966]). The shaft's power does not fade.
     """
     return _by_law(c, drive, _left(drive, drive.flow[0] ** 2))
 

@@ -1,4 +1,4 @@
-"""Wind loads of merchant ships by Isherwood (1972): coefficients by angle."""
+"""Wind loads of merchant ships by Isherwood [Isherwood1972]: coefficients by angle."""
 
 from __future__ import annotations
 

@@ -71,7 +71,7 @@ class Bretschneider:
 def pierson_moskowitz_of_wind(speed: float, gravity: float = GRAVITY) -> Bretschneider:
     """Return the spectrum of a fully developed sea under a wind of ``speed``, m/s, at 19.5 m.
 
-    S = A w^-5 exp(-B w^-4), A = 0.0081 g^2, B = 0.74 (g/U)^4 (Pierson and Moskowitz 1964):
+    S = A w^-5 exp(-B w^-4), A = 0.0081 g^2, B = 0.74 (g/U)^4 ([Pierson1964]):
     Hs = 0.209246 U^2/g, wp = 0.877163 g/U. Raises InputError for a speed that is not above 0.
     """
     require_positive(speed=speed)
@@ -94,7 +94,7 @@ def _pierson_moskowitz(b: float, gravity: float) -> Bretschneider:
 
 @dataclass(frozen=True)
 class Jonswap:
-    """JONSWAP's spectrum (Hasselmann et al. 1973) of given height.
+    """JONSWAP's spectrum ([Hasselmann1973]) of given height.
 
         S = A S_Bretschneider gamma^exp(-(w - wp)^2/(2 s^2 wp^2)),  s = 0.07 to wp, 0.09 above
 
@@ -150,7 +150,7 @@ def jonswap_normalisation(gamma: float) -> float:
 
 @dataclass(frozen=True)
 class Torsethaugen:
-    """Torsethaugen's simplified spectrum of wind sea and swell (Torsethaugen and Haver 2004).
+    """Torsethaugen's simplified spectrum of wind sea and swell ([Torsethaugen2004]).
 
     Two parts of heights H1 and H2 = sqrt(Hs^2 - H1^2); the sea is wind sea mostly if Tp is
     at most Tf = 6.6 Hs^(1/3). Each part, with s as in JONSWAP,
@@ -224,7 +224,7 @@ class Torsethaugen:
 
 @dataclass(frozen=True)
 class Tma:
-    """TMA spectrum of a finite depth h (Bouws et al. 1985): S = phi S_JONSWAP.
+    """TMA spectrum of a finite depth h ([Bouws1985]): S = phi S_JONSWAP.
 
         phi = tanh^2(kh)/(1 + 2kh/sinh 2kh)
 

@@ -33,7 +33,7 @@ BLENDERMANN = {
     "tanker_ballast": (0.7, 0.75, 0.55, 0.4, 2.2),
     "tender": (0.85, 0.55, 0.55, 0.65, 1.1),
 }
-"""By type: CD_t, CD_l,AF from ahead and from astern, delta, kappa (Blendermann 1994)."""
+"""By type: CD_t, CD_l,AF from ahead and from astern, delta, kappa ([Blendermann1994])."""
 
 
 def angle_of_attack(u: float, v: float) -> float:
@@ -70,7 +70,7 @@ class Silhouette:
 
 @dataclass(frozen=True)
 class Isherwood:
-    """Coefficients of merchant ships (Isherwood 1972), linear between rows of 10 degrees.
+    """Coefficients of merchant ships ([Isherwood1972]), linear between rows of 10 degrees.
 
     Without roll: C_K is 0.
     """
@@ -117,7 +117,7 @@ class Isherwood:
 
 @dataclass(frozen=True)
 class Blendermann:
-    """Coefficients by type of ship (Blendermann 1994). Raises InputError for an unknown type."""
+    """Coefficients by type of ship ([Blendermann1994]). Raises InputError for an unknown type."""
 
     shape: Silhouette
     kind: str

@@ -4,10 +4,10 @@ Of a limit and a confidence 1 - alpha each criterion has a one-sided bound on ei
 if the bound that is worse for it keeps the limit, it fails if the better one does not, and is
 undecided between: a wrong verdict has a probability of at most alpha.
 
-- Probability of failure, k of n cases: Clopper and Pearson (1934), exact for any n. Where the
-  campaign may end at any case (``until.decided``), a confidence sequence by a uniform mixture
-  (Robbins 1970): with probability 1 - alpha no n at all has B(k + 1, n - k + 1) above
-  p^k (1 - p)^(n - k) / alpha at the true p, so that looking after every case costs nothing.
+- Probability of failure, k of n cases: Clopper and Pearson [Clopper1934], exact for any n. Where
+  the campaign may end at any case (``until.decided``), a confidence sequence by a uniform mixture
+  ([Robbins1970]): with probability 1 - alpha no n at all has B(k + 1, n - k + 1) above p^k (1 -
+  p)^(n - k) / alpha at the true p, so that looking after every case costs nothing.
 - Mean: Student's t, exact of normal values, of many cases of others.
 - Quantile: order statistics, whose counts are binomial; exact of any continuous distribution.
 """

@@ -154,7 +154,7 @@ class CampaignComparison:
         """Return the tables to show: those that have a row."""
         a, b = self.names
         rates = Shown(
-            f"Rates of pass, %; interval of {_percent(CONFIDENCE)} % (Newcombe 1998)",
+            f"Rates of pass, %; interval of {_percent(CONFIDENCE)} % ([Newcombe1998])",
             ["criterion", "pairs", a, b, "difference", "from", "to", "McNemar p",
              "pass to fail", "fail to pass"],
             [[r.name, r.pairs, *(100.0 * x for x in (r.a, r.b, r.difference, r.low, r.high)),

@@ -14,7 +14,7 @@ real-valued signals) on the rows alone. Nothing is interpolated, and nothing was
 row: a window of the past is cut there.
 
 What the record does not decide is kept: each formula has a lower and an upper margin at each row
-(robust satisfaction intervals: Deshmukh et al. 2017, Robust online monitoring of signal temporal
+(robust satisfaction intervals: [Deshmukh2017], Robust online monitoring of signal temporal
 logic). A window of the future that reaches beyond the last row, and a comparison with what is no
 number, are between minus infinity and infinity. A formula holds if its lower margin is positive,
 and is broken if its upper one is negative.

@@ -63,7 +63,7 @@ def read_log(path: Path, format_name: str | None = None, time: Column | None = N
         log = chosen.read(path, time)
     except OSError as error:
         raise InputError(f"{path}: {error.strerror or error}") from None
-    except ModuleNotFoundError as error:
+    except ImportError as error:
         if said := lacking(error):
             raise InputError(f"{path}: {chosen.title}: {said}") from None
         raise

@@ -35,7 +35,7 @@ def about(axis: Any, angle: Any) -> Array:
 def of_euler(angles: Any) -> Array:
     """Return the rotation by yaw, then pitch, then roll, of (roll, pitch, yaw), rad.
 
-    It takes body axes to those that the angles are counted from (Fossen 2021, section 2.2).
+    It takes body axes to those that the angles are counted from ([Fossen2021], section 2.2).
     """
     phi, theta, psi = np.moveaxis(np.asarray(angles, dtype=float), -1, 0)
     yaw, pitch = about((0.0, 0.0, 1.0), psi), about((0.0, 1.0, 0.0), theta)

@@ -150,7 +150,7 @@ def _diagram(manifest: Mapping[str, Any]) -> str | None:
     components = {name: entry["fmu"] for name, entry in manifest["components"].items()}
     try:
         return diagram(components, [(row[0], row[1]) for row in manifest["connections"]])
-    except ModuleNotFoundError as error:
+    except ImportError as error:
         if (said := lacking(error)) is None:
             raise
         return f"<p>No diagram: {escape(said)}</p>"

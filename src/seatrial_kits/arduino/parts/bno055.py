@@ -109,7 +109,7 @@ def _axes(attitude: tuple[float, float, float]) -> tuple[float, float, float]:
 
 
 def _quaternion(phi: float, theta: float, psi: float) -> tuple[float, ...]:
-    """Return the unit quaternion of Euler angles ZYX (Fossen 2021, 2.77)."""
+    """Return the unit quaternion of Euler angles ZYX ([Fossen2021], 2.77)."""
     cp, sp = math.cos(phi / 2), math.sin(phi / 2)
     ct, st = math.cos(theta / 2), math.sin(theta / 2)
     cy, sy = math.cos(psi / 2), math.sin(psi / 2)

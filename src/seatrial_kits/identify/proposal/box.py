@@ -122,7 +122,7 @@ def projected(covers: tuple[float, float, float]) -> tuple[float, float, float]:
     """Return the factors of the added mass along x, y, z of a body that fills its box in part.
 
     ``covers`` c are the shares of the faces across x, y, z that are filled: c_x^2 c_y c_z along x,
-    and so on; that of the added inertia is c_x c_y c_z (Eidsvik 2015).
+    and so on; that of the added inertia is c_x c_y c_z ([Eidsvik2015]).
     """
     product = covers[0] * covers[1] * covers[2]
     return product * covers[0], product * covers[1], product * covers[2]

@@ -25,19 +25,19 @@ from .value import (
 )
 
 _PLATE = Formula(
-    "box: DNV-RP-H103 section 4.6.3, table A-2; projected areas: Eidsvik 2015",
+    "box: DNV-RP-H103 section 4.6.3, table A-2; projected areas: [Eidsvik2015]",
     "longer / shorter side of a face",
     *box.PLATES,
 )
 _TURNED = Formula(
-    "box: strips of DNV-RP-H103 table A-1, Eidsvik 2015; 30 to 100 % off",
+    "box: strips of DNV-RP-H103 table A-1, [Eidsvik2015]; 30 to 100 % off",
     "longer / shorter side of a face",
     *box.PLATES,
 )
 _DRAG = Formula("box: DNV-RP-C205 table E-1", "longest / shortest side", *box.DRAGS)
 _DRAG_TURNED = Formula("box: the same, by strips of its four sides")
 _BELOW = Formula("0.05 of the height below the centre of buoyancy, as BlueROV2's 0.01 to 0.02 m")
-_LAYOUT = Formula("layout of BlueROV2 Heavy (von Benzon et al. 2022), scaled")
+_LAYOUT = Formula("layout of BlueROV2 Heavy ([Benzon2022]), scaled")
 _SPEED = 1.0
 _NONE = (0.0, 0.0, 0.0)
 

@@ -9,7 +9,7 @@ import math
 
 
 def lewis(beam: float, draught: float, fullness: float) -> tuple[float, float]:
-    """Return a1, a3 of the Lewis form of a section, H = b / (2 T) (Lewis 1929).
+    """Return a1, a3 of the Lewis form of a section, H = b / (2 T) ([Lewis1929]).
 
         C = 3 + 4 sigma / pi + (1 - 4 sigma / pi) ((H - 1) / (H + 1))^2
         a3 = (3 - C + sqrt(9 - 2 C)) / C,   a1 = (1 + a3) (H - 1) / (H + 1)
@@ -38,7 +38,7 @@ def heave_mass(beam: float, draught: float, fullness: float, density: float) -> 
     """Return the added mass in heave at high frequency, kg/m.
 
     rho pi / 8 b^2 ((1 + a1)^2 + 3 a3^2) / (1 + a1 + a3)^2: half of the doubled section's
-    (Landweber & Macagno 1957).
+    ([Landweber1957]).
     """
     a1, a3 = lewis(beam, draught, fullness)
     shape = ((1.0 + a1) ** 2 + 3.0 * a3**2) / (1.0 + a1 + a3) ** 2
@@ -58,6 +58,6 @@ def sway_mass(beam: float, draught: float, fullness: float, density: float) -> f
 def roll_inertia(beam: float, draught: float, density: float) -> float:
     """Return the added inertia in roll about the water line at high frequency, kg.m.
 
-    rho pi / 16 ((b/2)^2 - T^2)^2: half of an ellipse's (Lamb 1932, art. 71); 0 of a half circle.
+    rho pi / 16 ((b/2)^2 - T^2)^2: half of an ellipse's ([Lamb1932], art. 71); 0 of a half circle.
     """
     return density * math.pi / 16.0 * ((beam / 2.0) ** 2 - draught**2) ** 2

@@ -124,7 +124,7 @@ class AddedMass:
 
 
 def surge_mass(mass: float, length: float, density: float) -> float:
-    """Return 2.7 rho V^(5/3) / L^2, kg, V = m / rho (Soeding 1982, as MSS has it)."""
+    """Return 2.7 rho V^(5/3) / L^2, kg, V = m / rho ([Soeding1982], as MSS has it)."""
     return float(2.7 * density * (mass / density) ** (5.0 / 3.0) / length**2)
 
 
@@ -134,7 +134,7 @@ def clarke(hull: FloatingHull, density: float) -> tuple[float, float]:
         -Y_v' = pi (T/L)^2 (1 + 0.16 C_B B/T - 5.1 (B/L)^2)                   on rho/2 L^3
         -N_r' = pi (T/L)^2 (1/12 + 0.017 C_B B/T - 0.33 B/L)                  on rho/2 L^5
 
-    Derivatives by acceleration, a regression over models of ships (Clarke, Gedling & Hine 1983).
+    Derivatives by acceleration, a regression over models of ships ([Clarke1983]).
     The second is 0 about L/B = 4.
     """
     L, B, T, C_B = hull.length, hull.beam, hull.draught, hull.block
@@ -208,8 +208,8 @@ def crossflow_coefficient(beam: float, draught: float) -> float:
 def hull_lift(draught: float, density: float) -> float:
     """Return the lift of a hull by speed ahead and across, kg/m: rho pi T^2 / 2.
 
-    A wing of low aspect ratio, doubled at the water line (Jones 1946), that leaves the water at the
-    stern: the leading terms of the linear derivatives of Clarke, Gedling & Hine (1983),
+    A wing of low aspect ratio, doubled at the water line ([Jones1946]), that leaves the water at
+    the stern: the leading terms of the linear derivatives of Clarke, Gedling & Hine [Clarke1983],
     Y_v' = -pi (T/L)^2, N_r' = -pi (T/L)^2 / 4.
     """
     return density * math.pi / 2.0 * draught**2

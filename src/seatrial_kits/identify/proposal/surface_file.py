@@ -27,7 +27,7 @@ from .value import (
 
 _TERMS = "restoring coriolis damping crossflow-drag hull-lift wave-loads wind-loads"
 _STRIPS = "surge: Soeding; heave, roll, pitch: strips, Lewis forms at high frequency; sway, yaw: "
-_SHIP = Formula(_STRIPS + "Clarke et al. 1983", "length / beam of a hull", ship.CLARKE_FROM)
+_SHIP = Formula(_STRIPS + "[Clarke1983]", "length / beam of a hull", ship.CLARKE_FROM)
 _BROAD = Formula(_STRIPS + "strips at low frequency", "length / beam of a hull", 4.0, 20.0)
 _RADII = Formula("radii of gyration 0.4 B, 0.25 L, 0.25 L about the CG (Fossen, otter; ITTC)")
 _BOX = Formula("even box of length, beam and height")
@@ -38,9 +38,7 @@ _WATERPLANE = Formula(
     1.0,
 )
 _GM = Formula("BM of the waterplane, Morrish's centre of buoyancy")
-_LIFT = Formula(
-    "wing of low aspect ratio (Jones; Clarke et al. 1983)", "draught / length", 0.0, 0.1
-)
+_LIFT = Formula("wing of low aspect ratio (Jones; [Clarke1983])", "draught / length", 0.0, 0.1)
 _HOERNER = Formula("Hoerner's curve, one hull", "beam / (2 draught)", *ship.HOERNER_RANGE)
 _FRICTION = "ITTC 1957 with Watanabe's form factor, no wave resistance"
 _RATIOS = Formula("damping ratios 0.3 in heave, 0.2 in roll, 0.4 in pitch (Fossen, otter)")

@@ -30,7 +30,7 @@ _REMUS = "as REMUS 100 has it"
 _SPHEROID = Formula("even spheroid", "length / diameter", 1.0)
 _LAMB = Formula("Lamb's factors of the spheroid, of the mass", "length / diameter", 1.0)
 _LIFT = Formula("Hoerner's lift of a body", "length / diameter", *torpedo.SLENDER)
-_STRIPS = Formula("strips of a cylinder, C_d 1.1 (Hoerner; Prestero 2001)", "length / diameter", 5)
+_STRIPS = Formula("strips of a cylinder, C_d 1.1 (Hoerner; [Prestero2001])", "length / diameter", 5)
 _SPEED = 1.5
 """m/s: about the 3 knots at which such vehicles survey."""
 _CG = 0.1
@@ -118,13 +118,13 @@ def _damping(particulars: Particulars, ahead: float, bare: float) -> list[Value]
     rolled = torpedo.ratio_damping(0.3, mass * 9.81 * low, roll)
     lift = torpedo.body_lift(length, diameter, rho)
     frontal = Formula(
-        f"ahead C_D 0.42 on the frontal area (Allen et al. 2000), the bare hull by Hoerner "
+        f"ahead C_D 0.42 on the frontal area ([Allen2000]), the bare hull by Hoerner "
         f"{bare:.3g}; heave: {_STRIPS.text}"
     )
     ratio = length / diameter
-    across = Formula("a cylinder (Hoerner; Prestero 2001)")
+    across = Formula("a cylinder (Hoerner; [Prestero2001])")
     roll_by = Formula("damping ratio 0.3 (Fossen, remus100)")
-    center = Formula("0.65 of the length from the nose (Prestero 2001)")
+    center = Formula("0.65 of the length from the nose ([Prestero2001])")
     return [
         estimated("quadratic_damping_force", (ahead, 0.0, force), "N.s2/m2", frontal, TOWING),
         estimated(

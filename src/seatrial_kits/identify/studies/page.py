@@ -76,7 +76,7 @@ def write_page(study: Study, folder: Path, parameters: str | None) -> Path:
 
 
 def ratio_rows(study: Study) -> list[RatioRow]:
-    """Return what the log shows, beside what the method of source 000 makes of it."""
+    """Return what the log shows, beside what the method of [Paulino2015] makes of it."""
     angle = study.experiment.rotation
     units = ("1/s", "1/rad" if angle else "1/m", *(("rad/s2",) * 2 if angle else ("m/s2",) * 2))
     names = ("linear", "quadratic", "offset", "thrust")

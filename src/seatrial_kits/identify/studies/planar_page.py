@@ -29,7 +29,7 @@ _UNITS = ("m/s2", "m/s2", "rad")
 
 
 def planar_rows(study: PlanarStudy) -> list[RatioRow]:
-    """Return what the log shows, beside what the method of source 000 makes of it."""
+    """Return what the log shows, beside what the method of [Paulino2015] makes of it."""
     return [
         RatioRow(
             symbol,

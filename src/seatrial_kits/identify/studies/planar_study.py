@@ -50,7 +50,7 @@ class PlanarStudy:
     """Held out: nothing of it was seen by the fit, but for its first state and the biases."""
     fit: PlanarFit
     source: PlanarEstimate
-    """What the method of source 000 finds from the same data."""
+    """What the method of [Paulino2015] finds from the same data."""
     free_run: FloatArray
     """Simulation over ``test`` (n, 3)."""
     free_run_fits: tuple[float, ...]

@@ -40,7 +40,7 @@ class Study:
     """Held out: nothing of it was seen by the fit, but for its first state and a bias."""
     estimate: Estimate
     source: SourceEstimate
-    """What the method of source 000 finds from the same data."""
+    """What the method of [Paulino2015] finds from the same data."""
     free_run: FloatArray
     """Simulation over ``test``."""
     free_run_fit: float

@@ -203,7 +203,7 @@ class SecondOrder:
 
 
 def nomoto_second(record: Record) -> SecondOrder:
-    """Return Nomoto's second-order model of a record with helm angle (Nomoto et al. 1957).
+    """Return Nomoto's second-order model of a record with helm angle ([Nomoto1957]).
 
     In partial fractions it is the sum of two lags of first order, A / (1 + T1 s) + B / (1 + T2 s),
     K = A + B, K T3 = A T2 + B T1, and the heading, linear in all but T1 and T2,
@@ -211,7 +211,7 @@ def nomoto_second(record: Record) -> SecondOrder:
         psi(t) = c_0 + c_1 t + c_2 exp(-t/T1) + c_3 exp(-t/T2) + A g_T1(t) + B g_T2(t),
 
     with g_T the response of the lag T to the helm. T1 and T2 are those of the least sum of
-    squares; the rest follows from them (variable projection, Golub and Pereyra 1973).
+    squares; the rest follows from them (variable projection, [Golub1973]).
 
     Raises InputError as `nomoto` does, and where a standard deviation of T1, T2 or T3 is above a
     quarter of the value: a vessel of first order, or a record that does not show more.

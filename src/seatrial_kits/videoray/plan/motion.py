@@ -81,9 +81,9 @@ def plan_motion(
 ) -> MotionPlan:
     """Return the motion of a vehicle that ends with ``surge``, m/s, and ``yaw_rate``, rad/s.
 
-    Source 000, section 4.1, for the vessel of 5.18: U and R are planned, each as a polynomial from
-    rest within ``duration``, s, or, of `AXES` in ``constant``, as there from the start; sway and
-    commands follow from the model (6.1 to 6.3, corrected, see `nominal_motion`). Without a
+    [Paulino2015], section 4.1, for the vessel of 5.18: U and R are planned, each as a polynomial
+    from rest within ``duration``, s, or, of `AXES` in ``constant``, as there from the start; sway
+    and commands follow from the model (6.1 to 6.3, corrected, see `nominal_motion`). Without a
     duration it is the shortest in which no thruster gets more than ``limit``. The track is theirs:
 
         x' = U cos psi - V sin psi,   y' = U sin psi + V cos psi,   psi' = R
