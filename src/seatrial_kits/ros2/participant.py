@@ -101,10 +101,10 @@ class Writer:
             participant.dds, participant.topic(topic, kind, prefix), _quality(durability, depth)
         )
 
-    def write(self, message: Any) -> None:
-        """Write a message of rosbags' class for the kind."""
+    def write(self, data: bytes) -> None:
+        """Write a message of the kind, as bytes (`packing`)."""
         try:
-            self.dds.write(self._sample(message))
+            self.dds.write(self._sample(data))
         except self._refused:
             self.dropped += 1
 
