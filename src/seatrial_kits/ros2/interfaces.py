@@ -1,7 +1,8 @@
 """Definitions that the stores of rosbags lack, by name: fields alone, of a service two parts.
 
-simulation_interfaces 1.x (Apache-2.0, https://github.com/ros-simulation/simulation_interfaces) and
-rcl_interfaces (Apache-2.0). A module, and no files: FMUs take modules along.
+simulation_interfaces 1.x (Apache-2.0, https://github.com/ros-simulation/simulation_interfaces),
+ros_gz_interfaces (Apache-2.0, https://github.com/gazebosim/ros_gz) and rcl_interfaces (Apache-2.0).
+A module, and no files: FMUs take modules along.
 """
 
 from __future__ import annotations
@@ -13,6 +14,13 @@ INTERFACES: Mapping[str, str] = {
 Parameter[] parameters
 ---
 SetParametersResult[] results
+""",
+    "ros_gz_interfaces/msg/Float32Array": """\
+float32[] data
+""",
+    "ros_gz_interfaces/msg/ParamVec": """\
+std_msgs/Header header
+rcl_interfaces/Parameter[] params
 """,
     "simulation_interfaces/msg/Bounds": """\
 uint8 type
