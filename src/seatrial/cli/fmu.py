@@ -104,26 +104,19 @@ def build(
         raise InputError("--platforms: --standalone FMUs are for Linux on x86-64 alone")
     changes = changes_of(settings, choices, vehicle, autopilot)
     if rig is not None:
-        for option, given in {"FMU": names, "--parameters": parameters, "--osp": osp}.items():
-            if given:
-                raise InputError(f"--rig: a rig has no {option} of its own")
+        _refuse_with_rig({"FMU": names, "--parameters": parameters, "--osp": osp})
+        build_rig = service("interchange.rig_build")
+        whole = build_rig(rig, changes, variant, 1 if seed is None else seed, version)
         wanted = checked_platforms(platforms) if platforms else []
-        whole = service("interchange.rig_build")(
-            rig, changes, variant, 1 if seed is None else seed, version
-        )
         answer.result["files"] = [str(whole.build(out, carrier, wanted))]
         return
     if changes or seed is not None:
         raise InputError("--set, --choose, --vehicle, --autopilot and --seed are of --rig")
     default = "linux64" if native or version == 3 else ""
     targets = checked_platforms(platforms or default) if platforms or default else []
-    if not native and not standalone and not targets and (why := why_unchecked()):
-        print_notes(
-            [
-                "the FMUs do not check what their host does, and run below folders with plain "
-                f"ASCII names only: {why}"
-            ]
-        )
+    if not carrier and not targets and (why := why_unchecked()):
+        note = "the FMUs do not check what their host does, and run below folders with plain "
+        print_notes([f"{note}ASCII names only: {why}"])
     for name in names or _default_names(native):
         source = _buildable(name)
         values = _start_values(source, parameters, variant) if parameters else None
@@ -133,6 +126,12 @@ def build(
         console.print(f"{path}  ({path.stat().st_size / 1000:.0f} kB)", soft_wrap=True)
         if osp:
             _write_osp(source, out)
+
+
+def _refuse_with_rig(options: Mapping[str, object]) -> None:
+    for option, given in options.items():
+        if given:
+            raise InputError(f"--rig: a rig has no {option} of its own")
 
 
 def _write_fmu(
