@@ -51,6 +51,11 @@ def list_fmus() -> None:
         console.print(f"{name:20} {escape(source.title)}", soft_wrap=True)
 
 
+_UNCHECKED = (
+    "the FMUs do not check what their host does, and run below folders with plain ASCII names only"
+)
+
+
 @fmu_app.command()
 def build(
     names: Annotated[
@@ -103,27 +108,23 @@ def build(
     if platforms and standalone:
         raise InputError("--platforms: --standalone FMUs are for Linux on x86-64 alone")
     changes = changes_of(settings, choices, vehicle, autopilot)
+    wanted = checked_platforms(platforms) if platforms else []
     if rig is not None:
         _refuse_with_rig({"FMU": names, "--parameters": parameters, "--osp": osp})
-        build_rig = service("interchange.rig_build")
-        whole = build_rig(rig, changes, variant, 1 if seed is None else seed, version)
-        wanted = checked_platforms(platforms) if platforms else []
-        answer.result["files"] = [str(whole.build(out, carrier, wanted))]
+        of_rig = (rig, changes, variant, 1 if seed is None else seed, version)
+        built = service("interchange.rig_build")(*of_rig).build(out, carrier, wanted)
+        answer.result["files"] = [str(built)]
         return
     if changes or seed is not None:
         raise InputError("--set, --choose, --vehicle, --autopilot and --seed are of --rig")
-    default = "linux64" if native or version == 3 else ""
-    targets = checked_platforms(platforms or default) if platforms or default else []
+    targets = wanted or (checked_platforms("linux64") if native or version == 3 else [])
     if not carrier and not targets and (why := why_unchecked()):
-        note = "the FMUs do not check what their host does, and run below folders with plain "
-        print_notes([f"{note}ASCII names only: {why}"])
+        print_notes([f"{_UNCHECKED}: {why}"])
     for name in names or _default_names(native):
         source = _buildable(name)
         values = _start_values(source, parameters, variant) if parameters else None
-        path = out / f"{source.name}.fmu"
-        _write_fmu(source, path, carrier, version, targets, values)
+        path = _write_fmu(source, out, carrier, version, targets, values)
         answer.result.setdefault("files", []).append(str(path))
-        console.print(f"{path}  ({path.stat().st_size / 1000:.0f} kB)", soft_wrap=True)
         if osp:
             _write_osp(source, out)
 
@@ -136,12 +137,13 @@ def _refuse_with_rig(options: Mapping[str, object]) -> None:
 
 def _write_fmu(
     source: ComponentSource,
-    path: Path,
+    folder: Path,
     carrier: str,
     version: int,
     targets: Sequence[str],
     values: dict[str, Value] | None,
-) -> None:
+) -> Path:
+    path = folder / f"{source.name}.fmu"
     if carrier == "native":
         service("native.build_native_fmu")(source, path, targets, values, version=version)
     elif carrier == "standalone":
@@ -149,6 +151,8 @@ def _write_fmu(
         print_notes([f"{path} runs on Linux on x86-64 with glibc {glibc} or newer"])
     else:
         build_fmu(source, path, values, version, targets)
+    console.print(f"{path}  ({path.stat().st_size / 1000:.0f} kB)", soft_wrap=True)
+    return path
 
 
 def _version(text: str) -> int:
