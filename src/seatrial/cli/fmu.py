@@ -38,6 +38,9 @@ from .terminals import print_proposals, print_terminals
 
 fmu_app = typer.Typer(no_args_is_help=True, pretty_exceptions_enable=False)
 
+_UNCHECKED = (
+    "the FMUs do not check what their host does, and run below folders with plain ASCII names only"
+)
 _WIDEST_NAME = 40
 """Of the column of names, in characters, where a terminal has not the width for all columns."""
 
@@ -49,11 +52,6 @@ def list_fmus() -> None:
     """List the FMUs that are shipped."""
     for name, source in named_sources().items():
         console.print(f"{name:20} {escape(source.title)}", soft_wrap=True)
-
-
-_UNCHECKED = (
-    "the FMUs do not check what their host does, and run below folders with plain ASCII names only"
-)
 
 
 @fmu_app.command()
