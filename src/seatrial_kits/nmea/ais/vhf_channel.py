@@ -11,7 +11,7 @@ from seatrial.errors import InputError
 from seatrial.links.geodesy import Origin
 from seatrial.links.packets.channel import RadioChannel
 from seatrial.links.packets.medium import Medium
-from seatrial.links.parameter_validation import start_us
+from seatrial.links.parameter_validation import start_date, start_us
 from seatrial.model.component import NS, Component, Parameter
 
 from .codec import to_air
@@ -63,13 +63,7 @@ class VhfChannel(RadioChannel):
     traffic = Parameter("", "1", "TOML file with ships and their tracks", role="file")
     latitude = Parameter(0.0, "rad", "of the origin, WGS 84", min=-1.5707964, max=1.5707964)
     longitude = Parameter(0.0, "rad", "of the origin, WGS 84", min=-3.1415927, max=3.1415927)
-    date = Parameter(
-        "2026-01-01",
-        "1",
-        "UTC at the start of the run: a day, for its midnight, or an instant",
-        check=start_us,
-        role="start-time",
-    )
+    date = start_date()
 
     def start(self, t: float) -> None:
         """Start with nothing on the way, and the ships at their places."""
