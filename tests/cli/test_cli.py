@@ -12,8 +12,7 @@ from typing import Any
 
 import pytest
 
-from seatrial.cli.commands import commands, loaded
-from seatrial.cli.examples import examples
+from seatrial.cli.commands import commands, examples, loaded
 from seatrial.errors import unknown
 from tests.command import SEATRIAL, seatrial
 
