@@ -15,7 +15,7 @@ _NAME = re.compile(r"[!-~]{1,10}")
 
 def whole_number(name: str, value: float) -> int:
     """Return a parameter that must be a whole number as one; raise InputError."""
-    if value != round(value):
+    if value % 1.0:
         raise InputError(f"{name} is {value!r}, a whole number is needed")
     return round(value)
 
