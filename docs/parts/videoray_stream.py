@@ -8,10 +8,9 @@ from parts import part
 from parts.can import ports
 from parts.markdown import table
 from seatrial.links.serial_gateway import SerialGateway
-from seatrial_kits.videoray.gains import GAINS
 from seatrial_kits.videoray.m5_thrusters import M5Thrusters
 from seatrial_kits.videoray.player import StreamPlayer
-from seatrial_kits.videoray.registers import BY_NAME, REGISTERS
+from seatrial_kits.videoray.registers import BY_NAME, GAINS, REGISTERS
 from seatrial_kits.videoray.rov import Pro4Rov
 from seatrial_kits.videoray.topside import Pro4Topside
 

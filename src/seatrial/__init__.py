@@ -14,12 +14,7 @@ from .moved import find_moved
 
 if TYPE_CHECKING:
     from .api.batch import Batch
-    from .api.campaigns import (
-        CampaignResult,
-        ask_campaign,
-        load_campaign_result,
-        run_campaign,
-    )
+    from .api.campaigns import CampaignResult, ask_campaign, load_campaign_result, run_campaign
     from .api.results import TrialResult, Verdict, load_result, run_trial
     from .api.simulation import Simulation
     from .errors import InputError, SeatrialError, SimulationError

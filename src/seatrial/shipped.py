@@ -60,12 +60,6 @@ def provided_place(kind: str, name: str) -> Place | None:
     return found[0] if found else None
 
 
-def provided_file(kind: str, name: str) -> Path | None:
-    """Return the file of a name that the core or a kit brings, as `provided_place` does."""
-    place = provided_place(kind, name)
-    return None if place is None else place.path
-
-
 def available(kind: str) -> dict[str, Path]:
     """Return the files of ``kind`` by name, the ones that `find_file` of `system.files` returns."""
     return {name: place.path for name, place in available_places(kind).items()}

@@ -6,8 +6,7 @@ from seatrial.errors import InputError
 from seatrial.system.parameters import load_vehicle
 from seatrial.trial.campaigns.campaign import load_campaign
 from seatrial.trial.campaigns.evaluator import Evaluator, Plan
-from seatrial.trial.campaigns.needed import needed_files
-from seatrial.trial.campaigns.shipment import packed, unpacked
+from seatrial.trial.campaigns.shipment import needed_files, packed, unpacked
 
 COMPONENT = """
 from seatrial.model.component import Component, Output, Parameter

@@ -5,9 +5,8 @@ import pytest
 from seatrial.cli.templates import texts, write
 from seatrial.errors import InputError
 from seatrial.system.assembly import assemble
-from seatrial.system.fitted_parts import vacant
+from seatrial.system.fitted_parts import forgotten, vacant
 from seatrial.system.flattening import load_rig
-from seatrial.system.forgotten import forgotten
 from tests.command import seatrial
 
 VEHICLE, PILOT = "harness/vehicles/tuna/vehicle.toml", "harness/vehicles/tuna/pilot.toml"

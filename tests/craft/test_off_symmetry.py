@@ -11,8 +11,7 @@ from scipy.spatial.transform import Rotation
 
 from seatrial.physics.craft.context import Context
 from seatrial.physics.craft.marine_craft import MarineCraft
-from seatrial.physics.craft.propellers import propellers
-from seatrial.physics.craft.rov import Rov
+from seatrial.physics.craft.rov import Rov, propellers
 from seatrial.physics.craft.six_dof import six_dof_motion
 from seatrial.physics.craft.through_water import flow_outputs
 from seatrial.physics.craft.wave_hull import WaveHull

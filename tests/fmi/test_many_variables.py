@@ -21,7 +21,7 @@ from seatrial.fmi.loading.conformance import problems
 from seatrial.fmi.loading.load import load_fmu
 from seatrial.trial.files.trial import load_trial
 from seatrial.trial.running.run import run_trial
-from seatrial_kits.interchange.osp.groups import Groups
+from seatrial_kits.interchange.osp.joining import Groups
 
 from .native import SLAVES, described_fmu
 

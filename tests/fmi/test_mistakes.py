@@ -8,8 +8,7 @@ import pytest
 
 from seatrial.errors import InputError
 from seatrial.fmi.components.index import component_class, components
-from seatrial.fmi.dependencies.checked import check
-from seatrial.fmi.dependencies.perturbation import refuse_dependent
+from seatrial.fmi.dependencies.checked import check, refuse_dependent
 from seatrial.model.component import Component, Input, Output, Parameter
 
 

@@ -8,7 +8,7 @@ import tempfile
 from pathlib import Path
 
 from seatrial.errors import InputError
-from seatrial_kits.mavlink.missions.plan_file import read_items, write_items
+from seatrial_kits.mavlink.missions.plan import read_items, write_items
 from seatrial_kits.mavlink.parameters.file import ParameterFile
 from seatrial_kits.mavlink.signing import Signing
 from seatrial_kits.mavlink.state_file import StateFile

@@ -7,7 +7,7 @@ import math
 import pynmea2
 
 from seatrial_kits.nmea.nmea0183.codec import decode
-from seatrial_kits.nmea.nmea0183.lines import Lines
+from seatrial_kits.nmea.nmea0183.component import Lines
 from seatrial_kits.nmea.nmea0183.orders import read_order
 from seatrial_kits.nmea.nmea0183.quantities import READERS, quantities_of
 

@@ -10,7 +10,7 @@ from typing import Any
 
 from seatrial.errors import InputError
 from seatrial.trial.files.scenario import read_scenario
-from seatrial_kits.interchange.osp.groups import Groups
+from seatrial_kits.interchange.osp.joining import Groups
 from seatrial_kits.interchange.osp.structure import read_structure
 
 _GROUPS = "x_OspModelDescription.xml"

@@ -8,7 +8,7 @@ import tempfile
 from pathlib import Path
 
 from seatrial.errors import InputError
-from seatrial.physics.seabed.grid_file import read_grid
+from seatrial.physics.seabed.grid import read_grid
 from seatrial.physics.seabed.obstacles import read_obstacles
 from seatrial.physics.seabed.scene import Scene
 

@@ -21,7 +21,7 @@ from seatrial.fmi.components.index import component_class, components
 from seatrial.kits import KINDS, kits, lacking, read_kit
 from seatrial.moved import MOVED
 from seatrial.plugins import offered, service
-from seatrial.shipped import provided_file
+from seatrial.shipped import provided_place
 from seatrial.trial.logs.formats import Format
 from tests.kit import needs_kits
 from tests.packages import installed
@@ -93,7 +93,9 @@ def test_a_kit_is_found_and_not_imported(kit: Callable[..., Path], tmp_path: Pat
     (folder / "content" / "trials").mkdir(parents=True)
     trial = folder / "content" / "trials" / "sonar-sweep.toml"
     trial.write_text("")
-    assert provided_file("harness/trials", "sonar-sweep") == trial
+    place = provided_place("harness/trials", "sonar-sweep")
+    assert place is not None
+    assert place.path == trial
 
 
 def test_a_name_of_two_kits_is_refused(kit: Callable[..., Path]) -> None:
@@ -106,7 +108,7 @@ def test_a_name_of_two_kits_is_refused(kit: Callable[..., Path]) -> None:
     with pytest.raises(
         InputError, match=r"'otter' is ambiguous: .*otter\.toml and .*otter.vehicle\.toml"
     ):
-        provided_file("vehicles", "otter")
+        provided_place("vehicles", "otter")
 
 
 def test_a_command_of_two_is_refused(kit: Callable[..., Path]) -> None:

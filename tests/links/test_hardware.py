@@ -201,12 +201,12 @@ def test_nothing_else_opens_sockets_or_ports():
     assert found - between_processes - files - opened_before - bound - of_tests - pages == {
         "seatrial/links/hardware.py",
         "seatrial/links/endpoints/pseudo_terminal.py",
-        "seatrial/links/endpoints/serial_port.py",
+        "seatrial/links/endpoints/descriptor.py",
         "seatrial/links/endpoints/tcp.py",
         "seatrial/links/endpoints/udp.py",
         "seatrial_kits/can/dronecan_multicast.py",
         "seatrial_kits/can/gateway_python_can.py",
-        "seatrial_kits/can/bus_log.py",
+        "seatrial_kits/can/run_log.py",
         "seatrial_kits/can/messages.py",
     }
 

@@ -7,9 +7,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
-from seatrial.physics.seabed.cone import first_return
 from seatrial.physics.seabed.plane import Plane
-from seatrial.physics.seabed.scene import Scene
+from seatrial.physics.seabed.scene import Scene, first_return
 from seatrial.physics.seabed.shapes import Sphere
 
 DOWN = (0.0, 0.0, 1.0)

@@ -5,7 +5,7 @@ import pytest
 
 from seatrial.errors import InputError
 from seatrial.model.component import Component
-from seatrial.physics.seabed.grid_file import read_grid
+from seatrial.physics.seabed.grid import read_grid
 from seatrial.physics.seabed.parameters import OverSeabed
 
 ASC = """ncols 3

@@ -62,11 +62,7 @@ def compare(
     if page is not None:
         raise InputError(f"--page: two campaigns are needed, and {run_a} has no {CAMPAIGN}")
     comparison = compare_runs(run_a, run_b)
-    answer.result = {
-        **asdict(comparison),
-        "worst": comparison.worst,
-        "summary": comparison.summary,
-    }
+    answer.result = {**asdict(comparison), "worst": comparison.worst, "summary": comparison.summary}
     print_table(comparison.table())
     console.print(comparison.summary)
     if not comparison.identical:

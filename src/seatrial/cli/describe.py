@@ -13,9 +13,8 @@ from ..errors import InputError, unmatched
 from ..model.readable import number
 from ..plugins import offered
 from ..system.assembly import assemble
-from ..system.fitted_parts import vacant
+from ..system.fitted_parts import forgotten, vacant
 from ..system.flattening import load_rig
-from ..system.forgotten import forgotten
 from ..system.packages import is_package, read_package
 from ..system.paths import joined, split_axis
 from ..system.rig import Rig, Scope
@@ -38,8 +37,7 @@ def describe(
     pattern: Match = "",
     every: Every = False,
     drawn: Annotated[
-        Path | None,
-        typer.Option("--diagram", metavar="FILE", help="Draw it into a file, as SVG."),
+        Path | None, typer.Option("--diagram", metavar="FILE", help="Draw it into a file, as SVG.")
     ] = None,
 ) -> None:
     """Show a rig's components, rigs inside it, every connection, and what is left open."""

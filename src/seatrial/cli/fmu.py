@@ -200,11 +200,7 @@ def check(
 
 
 @fmu_app.command()
-def describe(
-    name: Named,
-    pattern: Match = "",
-    every: Every = False,
-) -> None:
+def describe(name: Named, pattern: Match = "", every: Every = False) -> None:
     """Show an FMU's variables (causality, type, unit, start value, limits) and terminals."""
     found = find_source(name, Path.cwd())
     if isinstance(found, Path):

@@ -13,9 +13,7 @@ from .answer import answer
 from .show import console
 
 
-def move(
-    name: Annotated[str, typer.Argument(help="The vehicle's name.")],
-) -> None:
+def move(name: Annotated[str, typer.Argument(help="The vehicle's name.")]) -> None:
     """Move the files of a vehicle below the current folder into harness/vehicles/NAME.
 
     Numbers, rig, pilot and the parts that these name are compared before and after: what would

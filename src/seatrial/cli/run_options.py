@@ -12,8 +12,7 @@ RealTime = Annotated[
     typer.Option(metavar="FACTOR", help="In real time: simulated seconds per second of it."),
 ]
 Overrun = Annotated[
-    str | None,
-    typer.Option(metavar="POLICY", help="In real time: 'catch-up', 'slip' or 'abort'."),
+    str | None, typer.Option(metavar="POLICY", help="In real time: 'catch-up', 'slip' or 'abort'.")
 ]
 Record = Annotated[
     str,
@@ -43,8 +42,7 @@ RerunChanged = Annotated[
     ),
 ]
 Live = Annotated[
-    bool,
-    typer.Option("--live", help="Show the run in three dimensions, in a browser, as it goes."),
+    bool, typer.Option("--live", help="Show the run in three dimensions, in a browser, as it goes.")
 ]
 Port = Annotated[
     int, typer.Option("--port", metavar="N", min=0, max=65535, help="Port (0: any that is free).")
@@ -65,8 +63,7 @@ Limit = Annotated[
     ),
 ]
 KeepGoing = Annotated[
-    bool,
-    typer.Option("--keep-going", help="With --hardware: go on without a link that is lost."),
+    bool, typer.Option("--keep-going", help="With --hardware: go on without a link that is lost.")
 ]
 Twice = Annotated[
     bool,

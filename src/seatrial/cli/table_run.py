@@ -30,13 +30,7 @@ _SAID = 20
 
 
 def run_table(
-    campaign: Campaign,
-    out: Path | None,
-    how: How,
-    *,
-    junit: Path | None,
-    report: bool,
-    twice: bool,
+    campaign: Campaign, out: Path | None, how: How, *, junit: Path | None, report: bool, twice: bool
 ) -> None:
     """Run a campaign into its table, and say what came of it."""
     if junit is not None:

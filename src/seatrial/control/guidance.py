@@ -9,7 +9,7 @@ from typing import ClassVar, NamedTuple
 from ..errors import InputError
 from ..model.component import Input, Output, Parameter, Terminal, terminal
 from .guidance_motion import MANUAL, NEUTRAL, STEER, Command, Goal, Law
-from .guidance_orders import MANUAL_AXES, ORDERS, SENSED, Decision, GuidanceOrders, Task
+from .guidance_orders import MANUAL_AXES, ORDERS, SENSED, TASKS, Decision, GuidanceOrders, Task
 from .guidance_path import Point
 
 PILOTED = MappingProxyType(
@@ -21,7 +21,7 @@ PILOTED = MappingProxyType(
     }
 )
 """Modes under manual control, and whether heading and depth are held in them."""
-MODES = (*PILOTED, "hold", "guided", "auto", "return", "loiter", "surface")
+MODES = (*PILOTED, *TASKS, "surface")
 """Values of the input ``mode``."""
 
 

@@ -13,6 +13,8 @@ from .estimates import is_lost
 from .guidance_motion import FOLLOW, STAY, STEER, Command, Goal, Law, Past, command
 from .guidance_path import Point
 
+TASKS = ("hold", "guided", "auto", "return", "loiter")
+"""Modes that every guidance has."""
 TARGETS = ("position", "velocity", "heading")
 """Values of the input ``target_kind``."""
 

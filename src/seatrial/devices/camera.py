@@ -130,11 +130,7 @@ class Camera(Sensor):
         validity="axes",
     )
     size = Measured(
-        "rad",
-        "apparent diameter of each detection",
-        axes=_SLOTS,
-        span=(0.0, 1.0),
-        noise=0.1 * _DEG,
+        "rad", "apparent diameter of each detection", axes=_SLOTS, span=(0.0, 1.0), noise=0.1 * _DEG
     )
     kind = Derived("1", "kind of each detection: 1 buoy, 2 obstacle, 0 none", type=int, axes=_SLOTS)
     detected = Derived("1", "number of detections in the frame", type=int)

@@ -77,7 +77,6 @@ class Ctd(Sensor):
     depth = Derived("m", "depth of the sensor, positive down")
     speed_of_sound = Derived("m/s", "speed of sound")
 
-    _POSE: ClassVar = ("position", "attitude")
     terminals: ClassVar = {
         "motion": terminal("position", "attitude"),
         "reading": terminal(

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from typing import ClassVar
 
 from ..model.component import Parameter, terminal
-from ..physics.seabed.cone import first_return
+from ..physics.seabed.scene import first_return
 from .sensor import Measured, Value, require_unit
 from .sounding import Sounding
 

@@ -75,12 +75,7 @@ class Lbl(Sensor):
     attitude = Input("rad", "Euler angles, ZYX", axes=("phi", "theta", "psi"))
 
     ranges = Measured(
-        "m",
-        "range to each transponder",
-        axes=_EACH,
-        span=(0.0, 2000.0),
-        noise=0.3,
-        validity="axes",
+        "m", "range to each transponder", axes=_EACH, span=(0.0, 2000.0), noise=0.3, validity="axes"
     )
     depth = Measured("m", "depth of the transducer", span=(0.0, 300.0), noise=0.05)
     position_n = Derived(

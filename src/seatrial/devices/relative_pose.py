@@ -113,8 +113,7 @@ class RelativePose(Sensor):
         swung = cross((self._turned[0], self._turned[1], 0.0), b)
         return list(
             to_ned(
-                self.attitude,
-                [p + s + noise * v for p, s, v in zip(b, swung, normal, strict=True)],
+                self.attitude, [p + s + noise * v for p, s, v in zip(b, swung, normal, strict=True)]
             )
         )
 

@@ -214,7 +214,7 @@ class Sensor(Noise, Fallible, Sampled):
             ends = zip(values, self._low, self._high, strict=True)
             values = [y + SHARE_WRONG * (high - low) for y, low, high in ends]
         steps = zip(values, self._resolution, strict=True)
-        read = [_quantised(y, step) for y, step in steps]
+        read = [(step * round(y / step) if step else y) for y, step in steps]
         finished = self.finish([_held(y, most) for y, most in zip(read, self._range, strict=True)])
         measured = [None if x is None else y for x, y in zip(found, finished, strict=True)]
         return [*measured, *self.derive(measured)], self._count + 1, True
@@ -293,10 +293,6 @@ def _faulty(fault: Written, axis: int, normal: float, x: float, moment: Moment) 
             operator = Deviation(tuple(fault.settings["coefficients"]))
     value: float = operator.value(None, x, moment)
     return value
-
-
-def _quantised(value: float, step: float) -> float:
-    return step * round(value / step) if step else value
 
 
 def _held(value: float, most: float) -> float:

@@ -78,9 +78,7 @@ class Usbl(Sensor):
         instability=_DEG,
     )
     position_n = Derived(
-        "m",
-        "position of the transponder, north-east-down",
-        axes=("north", "east", "down"),
+        "m", "position of the transponder, north-east-down", axes=("north", "east", "down")
     )
 
     # Sound takes its time: nothing arrives at the instant of the question.

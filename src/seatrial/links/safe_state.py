@@ -16,7 +16,9 @@ from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from typing import Any
 
+from ..errors import InputError
 from .endpoints.endpoint import Channel, Endpoint
+from .endpoints.url import reaches_device
 
 ENVIRONMENT = "SEATRIAL_SAFE_STATE"
 """Environment variable with the number of the socket's descriptor; without it nobody keeps."""
@@ -108,3 +110,25 @@ def _send(message: dict[str, Any], fds: Sequence[int] = ()) -> None:
         data = json.dumps({"pid": os.getpid(), **message}).encode()
         with socket.socket(fileno=os.dup(number)) as channel, suppress(ConnectionError):
             socket.send_fds(channel, [data], fds)  # an error: the supervisor was killed
+
+
+UNSET = "unset"
+"""Value of a parameter that nobody has written; none at all is written as the empty text."""
+
+
+def safe_state_bytes(text: str) -> bytes:
+    """Return the bytes of hexadecimal numbers. Raises InputError for another text."""
+    try:
+        return b"" if text == UNSET else bytes.fromhex(text)
+    except ValueError:
+        raise InputError(f"safe_state: {text!r} is not bytes such as 'FAAF 0100'") from None
+
+
+def require_safe_state(text: str, urls: str) -> None:
+    """Raise InputError if one of ``urls`` reaches a device and nobody has written a safe state."""
+    for url in urls.split() if text == UNSET else ():
+        if reaches_device(url):
+            raise InputError(
+                f"safe_state is not set, and {url!r} reaches a device: write the bytes that stop "
+                "it, or safe_state = '' if there are none"
+            )

@@ -80,11 +80,7 @@ def _sky(unix_s: int, latitude: float, longitude: float) -> Sky:
         x, y = math.cos(along), math.sin(along) * math.cos(_INCLINATION)
         z = math.sin(along) * math.sin(_INCLINATION)
         place = np.array(
-            (
-                x * math.cos(node) - y * math.sin(node),
-                x * math.sin(node) + y * math.cos(node),
-                z,
-            )
+            (x * math.cos(node) - y * math.sin(node), x * math.sin(node) + y * math.cos(node), z)
         )
         away = _ORBIT * place - _EARTH * up
         line = away / np.linalg.norm(away)

@@ -9,8 +9,7 @@ from ..model.component import Component, Input, Logging, Output, Parameter, Reac
 from .endpoints.budget import Budget
 from .endpoints.endpoint import Endpoint, report
 from .endpoints.url import check_urls, open_endpoints, other_end
-from .safe_state import HeldChannels
-from .safe_state_bytes import UNSET, check_safe_state, require_safe_state, safe_state_bytes
+from .safe_state import UNSET, HeldChannels, require_safe_state, safe_state_bytes
 from .text import Inbox, Outbox
 
 
@@ -39,7 +38,7 @@ class SerialGateway(Logging, Reachable, Component):
         "tcpin:127.0.0.1:0", "1", "URLs of the other ends, separated by spaces", check=check_urls
     )
     safe_state = Parameter(
-        UNSET, "1", "bytes sent at the end, hexadecimal; empty for none", check=check_safe_state
+        UNSET, "1", "bytes sent at the end, hexadecimal; empty for none", check=safe_state_bytes
     )
 
     rx = Input("1", "bytes for the other end", type=str, role="bytes", optional=True)

@@ -36,10 +36,7 @@ class Settings:
         """Return a value of a scalar's own type: a number, a text, a truth value, a preset."""
         port = self._scalars[0].name.partition(".")[0]
         given = from_written(
-            self._written(key),
-            self._scalars,
-            self._presets.get(port, {}),
-            f"{self._origin}.{key}",
+            self._written(key), self._scalars, self._presets.get(port, {}), f"{self._origin}.{key}"
         )
         return given[self._scalars[index].name].value
 

@@ -38,12 +38,7 @@ class StepTimes:
             self.longest_at_ns = at_ns
 
     def merge(
-        self,
-        count: int,
-        total_ns: int,
-        longest_ns: int,
-        longest_at_ns: int,
-        bins: Sequence[int],
+        self, count: int, total_ns: int, longest_ns: int, longest_at_ns: int, bins: Sequence[int]
     ) -> None:
         """Add durations that were counted elsewhere, later than these."""
         if longest_ns > self.longest_ns or self.longest_at_ns is None:

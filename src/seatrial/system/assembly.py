@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 
 from ..errors import InputError, unknown
 from ..shipped import is_provided
@@ -12,13 +12,13 @@ from .component_parameters import followed, give_parameters, vehicles_of
 from .connecting import connect
 from .fitted_parts import require_thrusts
 from .loading import load_part
-from .mounting import far_off
+from .parameters import Outline
+from .part import Part
 from .profile.profile import Profiles
 from .rig import Rig
 from .shape_ports import resolve_shapes
-from .system import Engine, System
+from .system import Connection, Engine, System
 from .tuning import connect_tunables
-from .unasked_axes import unasked
 
 
 def assemble(
@@ -117,3 +117,93 @@ def _yield_to_connections(system: System) -> None:
             del part.given[variable]
         for variable in part.given:
             system.refuse_connected(name, variable, part.given[variable].origin)
+
+
+_PLACES = ("antenna", "place")
+"""Parameters of sensors: from the body origin, body axes, m."""
+
+
+def far_off(system: System) -> list[str]:
+    """Return notes on sensors further from the hull beside them than its length.
+
+    The hull is the outline about the body origin. A sensor may stand that far above or below it.
+    """
+    outlines = {_scope(n): part.outline for n, part in system.parts.items() if part.outline}
+    notes = []
+    for name, part in system.parts.items():
+        outline = outlines.get(_scope(name))
+        if outline is None or part.outline is not None:
+            continue
+        for port, place in _places(part):
+            if _distance(place, outline) > outline.length:
+                x, y, z = place
+                notes.append(
+                    f"{part.given[f'{port}.x'].origin}: {port} is at ({x:g}, {y:g}, {z:g}) m, "
+                    f"outside of the hull of {outline.length:g} m by {outline.beam:g} m by more "
+                    "than its length"
+                )
+    return notes
+
+
+def _places(part: Part) -> Iterator[tuple[str, tuple[float, float, float]]]:
+    for port in _PLACES:
+        given = [part.given.get(f"{port}.{axis}") for axis in "xyz"]
+        if all(given):
+            x, y, z = (float(one.value) for one in given if one is not None)
+            yield port, (x, y, z)
+
+
+def _distance(place: tuple[float, float, float], outline: Outline) -> float:
+    """Return how far a place is outside of the outline, along the axis where it is most."""
+    x, y, z = place
+    return max(abs(x) - outline.length / 2.0, abs(y) - outline.beam / 2.0, abs(z))
+
+
+def _scope(name: str) -> str:
+    return name.rpartition(".")[0]
+
+
+_AXES = {
+    "surge": "surge",
+    "sway": "sway",
+    "heave": "heave",
+    "roll_moment": "roll",
+    "pitch_moment": "pitch",
+    "yaw_moment": "yaw",
+}
+"""Axes of an allocation by its inputs."""
+
+
+def unasked(system: System) -> list[str]:
+    """Return notes on demands that reach an allocation and are not among its ``axes``."""
+    notes = []
+    for connection in system.connections:
+        name, port = connection.target
+        part, axis = system.parts[name], _AXES.get(port, "")
+        if not axis or "propulsor_order.p1" not in part.instance.variables:
+            continue
+        axes = str(_value(part, "axes", axis))
+        if axis not in axes.split() and _asks(system, connection):
+            notes.append(
+                f"{name}.axes is {axes!r}: nothing gives {axis}, which "
+                f"{'.'.join(connection.source)} asks for"
+            )
+    return notes
+
+
+def _asks(system: System, connection: Connection) -> bool:
+    """Return whether a demand may be other than 0: a helm has axes that it does not steer."""
+    name, port = connection.source
+    part = system.parts[name]
+    if f"{port}_limit" not in part.instance.variables:
+        return True
+    held = (name, f"{port}_held")
+    fed = any(one.target == held for one in system.connections)
+    return fed or _value(part, f"{port}_limit", 0.0) != 0.0
+
+
+def _value(part: Part, name: str, otherwise: object) -> object:
+    if name in part.given:
+        return part.given[name].value
+    variable = part.instance.variables.get(name)
+    return otherwise if variable is None else variable.start

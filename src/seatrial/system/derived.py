@@ -7,15 +7,7 @@ from typing import Any
 
 from ..errors import InputError, unknown
 from ..model.units import Unit, split_quantity
-from .entries import (
-    Computed,
-    DerivedEntry,
-    Entry,
-    Mark,
-    Resolved,
-    WrittenEntry,
-    common_unit,
-)
+from .entries import Computed, DerivedEntry, Entry, Mark, Resolved, WrittenEntry, common_unit
 from .expressions import Value, bare_name, evaluate, is_expression
 from .quantities import amount, dimension, in_unit
 from .wildcards import expanded
@@ -24,10 +16,7 @@ Tables = Mapping[str, Mapping[str, WrittenEntry]]
 
 _MARKS: tuple[Mark, ...] = ("stated", "corrected", "identified", "assumed")
 """From the strongest to the weakest."""
-_AXES = {
-    3: ("xyz", "uvw", "pqr", ("xx", "yy", "zz")),
-    6: (("xx", "yy", "zz", "xy", "xz", "yz"),),
-}
+_AXES = {3: ("xyz", "uvw", "pqr", ("xx", "yy", "zz")), 6: (("xx", "yy", "zz", "xy", "xz", "yz"),)}
 """Names of a list's elements, by its length."""
 
 

@@ -79,12 +79,7 @@ def _options(entry: ComponentEntry, loaded: LoadedFmu, tolerance: float | None) 
 
 
 def _part(
-    entry: ComponentEntry,
-    name: str,
-    scope: Scope,
-    engine: Engine,
-    timeout_s: float,
-    every: int,
+    entry: ComponentEntry, name: str, scope: Scope, engine: Engine, timeout_s: float, every: int
 ) -> Part:
     """Return a component; an isolated one is an FMU with any engine."""
     source = find_source(entry.fmu, scope.folder)

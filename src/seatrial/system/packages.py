@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 from ..plugins import service
-from .packaged import OSP_FILE, SSP_FILE, PackagedSystem
+from .rig import Rig
 
 
 def is_package(name: str, relative_to: Path | None = None) -> bool:
@@ -29,3 +30,22 @@ def read_package(path: Path, changes: Mapping[str, Any]) -> PackagedSystem:
         "interchange.read_osp" if is_osp else "interchange.read_ssp"
     )
     return read(path, changes.get("step"))
+
+
+SSP_FILE = "SystemStructure.ssd"
+"""The description that every SSP package has."""
+OSP_FILE = "OspSystemStructure.xml"
+"""The name that libcosim looks for in a folder."""
+
+
+@dataclass(frozen=True)
+class PackagedSystem:
+    """A package read: its rig, the times it names, and what was met and not used."""
+
+    title: str
+    rig: Rig
+    start: str | None
+    stop: str | None
+    notes: tuple[str, ...]
+    called: Mapping[str, str] = field(default_factory=dict)
+    """Components by the names in the package, where they are no identifiers."""

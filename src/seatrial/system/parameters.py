@@ -114,13 +114,7 @@ class Vehicle:
         origin = f"vehicles/{shown} [{table}]{suffix}"
         body = Body(file.shape[table], path, table, self.tables) if table in file.shape else None
         return ParameterSet(
-            values,
-            entries.presets(table),
-            origin,
-            file.outline,
-            body,
-            (path, table),
-            path.parent,
+            values, entries.presets(table), origin, file.outline, body, (path, table), path.parent
         )
 
     def entries(self, variant: str | None) -> Entries:

@@ -111,11 +111,7 @@ def _target(system: System, path: str, where: str) -> tuple[str, str]:
 
 
 def _feed(
-    system: System,
-    source: tuple[str, str],
-    target: tuple[str, str],
-    tunable: Tunable,
-    where: str,
+    system: System, source: tuple[str, str], target: tuple[str, str], tunable: Tunable, where: str
 ) -> None:
     variable = system.parts[target[0]].instance.variables[target[1]]
     for connection in system.connections:

@@ -101,10 +101,7 @@ def from_entry(
 
 
 def from_written(
-    written: Any,
-    scalars: Sequence[Variable],
-    presets: Mapping[str, Resolved],
-    origin: str,
+    written: Any, scalars: Sequence[Variable], presets: Mapping[str, Resolved], origin: str
 ) -> dict[str, Given]:
     """Return what a rig, a trial or the command line says of a port, as scalars.
 

@@ -23,11 +23,7 @@ _LINES = 120
 """Of compilers' errors that a message has."""
 _CORE = ("machine", "uarts", "api", "avr_libc", "texts", "devices")
 _BASE = ("-std=gnu++17", "-gdwarf-4", "-w", "-fpermissive", "-fno-pie", "-ffp-contract=off")
-_SKETCH = (
-    "-O1",
-    "-fsingle-precision-constant",
-    "-fsanitize-coverage=trace-pc",
-)
+_SKETCH = ("-O1", "-fsingle-precision-constant", "-fsanitize-coverage=trace-pc")
 
 
 def build_host(sketch: Sketch, mcu: Mcu) -> Path:

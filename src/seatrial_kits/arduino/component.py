@@ -28,8 +28,7 @@ from .ports import ArduinoPorts
 from .pulses import Pulses
 from .real_board import RealBoard
 from .sketch import Sketch, find_sketch
-from .uart_links import open_links
-from .wiring import STEPPERS, UARTS, Wire, read_uarts, read_wires
+from .wiring import STEPPERS, UARTS, Wire, open_links, read_uarts, read_wires
 
 _WATCHED = ("servo", "pwm", "output", "step", "direction")
 _SOFT = {"soft_rx": "r", "soft_tx": "t"}

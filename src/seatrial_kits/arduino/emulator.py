@@ -129,12 +129,7 @@ def _archive(
 
 
 def _object(
-    file: Path,
-    mcu: Mcu,
-    flags: tuple[str, ...],
-    includes: list[Path],
-    scratch: Path,
-    number: int,
+    file: Path, mcu: Mcu, flags: tuple[str, ...], includes: list[Path], scratch: Path, number: int
 ) -> Path:
     """Return the object file of one source; its folder is searched for headers first."""
     compiled = scratch / f"{number}.o"

@@ -6,7 +6,7 @@ import math
 from typing import ClassVar
 
 from seatrial.links.parameter_validation import start_us
-from seatrial.links.safe_state_bytes import UNSET, check_safe_state
+from seatrial.links.safe_state import UNSET, safe_state_bytes
 from seatrial.model.component import (
     Component,
     Input,
@@ -20,8 +20,18 @@ from seatrial.model.unit_table import STANDARD_GRAVITY
 
 from .mcus import MCUS
 from .sketch import read_flags
-from .uart_links import read_links, read_monitors
-from .wiring import BLOCKS, GROUP, OTHERS, SERVOS, STEPPERS, UARTS, read_uarts, read_wires
+from .wiring import (
+    BLOCKS,
+    GROUP,
+    OTHERS,
+    SERVOS,
+    STEPPERS,
+    UARTS,
+    read_links,
+    read_monitors,
+    read_uarts,
+    read_wires,
+)
 
 BACKENDS = ("host", "simavr", "board")
 _UARTS = tuple(f"uart{i}" for i in range(UARTS))
@@ -77,7 +87,7 @@ class ArduinoPorts(Reachable, Component):
         check=read_monitors,
     )
     safe_state = Parameter(
-        UNSET, "1", "board: safe-state bytes, hexadecimal; empty for none", check=check_safe_state
+        UNSET, "1", "board: safe-state bytes, hexadecimal; empty for none", check=safe_state_bytes
     )
     timeout = Parameter(
         2.0,
@@ -125,11 +135,7 @@ class ArduinoPorts(Reachable, Component):
         optional=True,
     )
     cut = Input(
-        "1",
-        "whether each UART's line is cut, both ways",
-        type=bool,
-        axes=_UARTS,
-        optional=True,
+        "1", "whether each UART's line is cut, both ways", type=bool, axes=_UARTS, optional=True
     )
     wind_speed = Input("m/s", "speed of the wind at cups", optional=True)
     wind_angle = Input(

@@ -6,13 +6,11 @@ import struct
 
 from seatrial.errors import InputError
 from seatrial.links.endpoints.endpoint import Endpoint
-from seatrial.links.safe_state import HeldChannels
-from seatrial.links.safe_state_bytes import require_safe_state, safe_state_bytes
+from seatrial.links.safe_state import HeldChannels, require_safe_state, safe_state_bytes
 
 from .board import UART, Event, Inputs
 from .mcus import CLOCK
-from .uart_links import open_links, read_links
-from .wiring import Wire
+from .wiring import Wire, open_links, read_links
 
 _INPUT = struct.Struct("<BBHd")
 

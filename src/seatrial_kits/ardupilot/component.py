@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+import shlex
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -18,12 +20,10 @@ from seatrial.links.vehicle_sensors import read_instruments
 from seatrial.links.watchdog import Watchdog
 from seatrial.model.component import Component
 
-from .earth import Earth
-from .firmware import arguments, by_hand
 from .lockstep import Lockstep
 from .packet import MOST_CHANNELS
 from .ports import LOOP_HZ, ArduPilotPorts
-from .reply import RANGES, blows_from, read_fields, reply
+from .reply import RANGES, Earth, blows_from, read_fields, reply
 from .simulated import Simulated, simulated, write_parameters
 
 BOOTED_S = 10.0
@@ -250,3 +250,33 @@ class ArduPilot(ArduPilotPorts):
             case "battery":
                 return {"voltage": self.voltage, "current": self.current}
         return self.distance[RANGES.index(name)]
+
+
+def arguments(
+    port: int,
+    home: tuple[float, float, float, float],
+    step: float,
+    speedup: float,
+    *,
+    defaults: str = "",
+    serial0: str = "",
+) -> list[str]:
+    """Return the firmware's options.
+
+    ``home`` is latitude, longitude and heading in degrees, with the altitude in m before the
+    heading; ``step`` the communication step in s; ``defaults`` a parameter file, ``serial0`` the
+    device of its first serial port, each empty for its own.
+    """
+    latitude, longitude, altitude, heading = home
+    options = [
+        "--model", "JSON:127.0.0.1", "--sim-port-out", str(port),
+        "--home", f"{latitude:.9f},{longitude:.9f},{altitude:g},{heading:.3f}",
+        "--rate", f"{round(1.0 / step)}", "--speedup", f"{speedup:g}",
+    ]  # fmt: skip
+    given = {"--defaults": defaults, "--serial0": serial0}
+    return [*options, *(word for key, text in given.items() if text for word in (key, text))]
+
+
+def by_hand(program: str, options: Sequence[str]) -> str:
+    """Return the command as a person types it."""
+    return shlex.join([program, *options])

@@ -7,22 +7,14 @@ from typing import Any, ClassVar
 
 from seatrial.errors import InputError
 from seatrial.links.endpoints.endpoint import report
-from seatrial.model.component import (
-    NS,
-    Component,
-    Input,
-    Output,
-    Parameter,
-    Reachable,
-    terminal,
-)
+from seatrial.model.component import NS, Component, Input, Output, Parameter, Reachable, terminal
 
 from .frame import Frame
 from .gateway import Gateway
 from .gateway_url import check_link, open_gateway
 from .node import CanNode
 from .operations import BusError, Confirm, Transmit
-from .safe_state import check_frames, frames_of
+from .safe_state import frames_of
 
 MOST_REQUESTED = 64
 """Frames requested and not yet confirmed: fewer than a controller's queue holds."""
@@ -71,7 +63,7 @@ class CanGateway(Reachable, Component):
     )
 
     safe_state = Parameter(
-        "", "1", "frames sent at the end, IDENTIFIER#DATA, separated by spaces", check=check_frames
+        "", "1", "frames sent at the end, IDENTIFIER#DATA, separated by spaces", check=frames_of
     )
 
     rx = Input("1", "operations from the bus", type=str, role="can")

@@ -45,11 +45,6 @@ def frames_of(text: str) -> list[Frame]:
     return found
 
 
-def check_frames(text: str) -> None:
-    """Raise InputError for a text that is not frames."""
-    frames_of(text)
-
-
 def send_to_bus(bus: dict[str, Any], frames: str) -> None:
     """Open a bus of python-can's, send frames, and leave it."""
     with can.Bus(**bus, ignore_config=True) as opened:

@@ -146,11 +146,6 @@ class SimulatedBus:
         self._bit, self._data_bit = round(PS / self.rate), round(PS / self.data_rate)
 
     @property
-    def bit_ps(self) -> int:
-        """Nominal bit time, ps."""
-        return self._bit
-
-    @property
     def busy_ps(self) -> int:
         """Time that frames, error frames and intermissions have taken until now."""
         return self.taken_ps - max(0, self.free_ps - self.now_ps)

@@ -6,15 +6,7 @@ import re
 from typing import Any, ClassVar, NamedTuple
 
 from seatrial.errors import InputError
-from seatrial.model.component import (
-    NS,
-    Component,
-    Input,
-    Noise,
-    Output,
-    Parameter,
-    terminal,
-)
+from seatrial.model.component import NS, Component, Input, Noise, Output, Parameter, terminal
 
 from .bits import INTERMISSION, length
 from .frame import FD_LENGTHS, Frame

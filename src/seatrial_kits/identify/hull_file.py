@@ -61,14 +61,8 @@ class Estimate:
         of = self.of
         rows: dict[str, tuple[str, Sequence[float]]] = {
             "linear_damping_force": ("N.s/m", (-of("X_u"), 0.0, 0.0)),
-            "quadratic_damping_force": (
-                "N.s2/m2",
-                (-of("X_u|u|"), -of("Y_v|v|"), -of("Z_w|w|")),
-            ),
-            "quadratic_damping_moment": (
-                "N.m.s2/rad2",
-                (0.0, -of("M_q|q|"), -of("N_r|r|")),
-            ),
+            "quadratic_damping_force": ("N.s2/m2", (-of("X_u|u|"), -of("Y_v|v|"), -of("Z_w|w|"))),
+            "quadratic_damping_moment": ("N.m.s2/rad2", (0.0, -of("M_q|q|"), -of("N_r|r|"))),
             "quadratic_coupled_damping_force": ("N.s2/rad2", (of("Y_r|r|"), of("Z_q|q|"))),
             "quadratic_coupled_damping_moment": ("N.s2/m", (of("N_v|v|"), of("M_w|w|"))),
         }

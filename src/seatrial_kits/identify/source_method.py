@@ -171,11 +171,7 @@ def planar_least_squares(
         np.column_stack([v_dot, v, none, none]),
         np.column_stack([u * v / arm, none, -t1, t2]),
     ]
-    right = [
-        -m11 * u_dot - d11 * u,
-        -m11 * u * r,
-        (-m33 * r_dot + m11 * u * v - d33 * r) / arm,
-    ]
+    right = [-m11 * u_dot - d11 * u, -m11 * u * r, (-m33 * r_dot + m11 * u * v - d33 * r) / arm]
     found = normalised_least_squares(np.vstack(rows), np.concatenate(right))
     m22, d22, E1, E2 = (float(value) for value in found)
     return PlanarEstimate(m22, d22, E1, E2)

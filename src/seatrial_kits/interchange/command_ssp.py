@@ -39,8 +39,7 @@ def export(
     vehicle: Vehicle = None,
     autopilot: Autopilot = None,
     tool: Annotated[
-        str | None,
-        typer.Option("--for", help=f"A tool that must take it: {', '.join(TOOLS)}."),
+        str | None, typer.Option("--for", help=f"A tool that must take it: {', '.join(TOOLS)}.")
     ] = None,
     version: Annotated[
         str, typer.Option(help="Version of SSP: 1.0, or 2.0 with the types and arrays of FMI 3.")

@@ -247,10 +247,7 @@ class Scene:
     def _arrows(self) -> None:
         """Add arrows of wind and current, which show where they go to."""
         self._drawn: list[tuple[Any, Any, float]] = []
-        made = (
-            ("wind", _WIND, self._wind, 2.2),
-            ("current", _CURRENT, self._current, 0.03),
-        )
+        made = (("wind", _WIND, self._wind, 2.2), ("current", _CURRENT, self._current, 0.03))
         for name, colour, velocity, height in made:
             if velocity(0.0, None) is None:
                 continue

@@ -20,6 +20,7 @@ from pathlib import Path
 from typing import Any
 
 from seatrial.errors import InputError, SimulationError
+from seatrial.fmi.instance import Variable
 from seatrial.model.component import seconds
 from seatrial.sim.actions import action
 from seatrial.sim.clock import Pacer
@@ -28,9 +29,8 @@ from seatrial.sim.faults import resolved
 from seatrial.sim.master import Master
 from seatrial.system.fault_entry import FaultEntry
 from seatrial.system.files import validated
+from seatrial.system.system import System
 from seatrial.trial.running.lost_links import watched
-
-from .settables import orders_of, settables_of
 
 _FRAME_S = 1.0 / 30.0
 """Least wall time between two frames."""
@@ -207,3 +207,72 @@ class Tap:
             self._own.start(self._master.time_ns)
         else:
             self._own.change(factor, self._master.time_ns)
+
+
+_HELM = ("mode", "armed", "manual")
+"""Members of the terminal ``orders`` by which a person takes a pilot's helm."""
+
+
+def settables_of(system: System, master: Master) -> list[dict[str, Any]]:
+    """Return the numbers and switches that can be set at any time, with unit, limits, value.
+
+    They are inputs that nothing feeds and tunable parameters that nothing feeds, scalar by scalar.
+    """
+    found = []
+    for name, part in system.parts.items():
+        fed = system.feeders(name)
+        own = [
+            v
+            for v in part.instance.variables.values()
+            if v.type in (float, int, bool)
+            and v.name not in fed
+            and v.role != "fault"
+            and (v.causality == "input" or v.variability == "tunable")
+        ]
+        values = master.values(name, [v.name for v in own]) if own else []
+        found += [_entry(name, v, value) for v, value in zip(own, values, strict=True)]
+    return found
+
+
+def _entry(component: str, variable: Variable, value: Any) -> dict[str, Any]:
+    limits = [variable.minimum, variable.maximum]
+    return {
+        "key": f"{component}.{variable.name}",
+        "unit": variable.unit,
+        "limits": [x if x is not None and math.isfinite(x) else None for x in limits],
+        "value": value,
+        "is_switch": variable.type is bool,
+        "description": variable.description,
+    }
+
+
+def orders_of(system: System, master: Master) -> list[dict[str, Any]]:
+    """Return the pilots whose helm a person can take: what their orders are written to.
+
+    ``fed`` has the members that something else orders, which a fault of the kind fixed replaces
+    as long as somebody has the helm; ``before`` has mode and arming as the rig starts.
+    """
+    found = []
+    for name, part in system.parts.items():
+        orders = part.instance.terminals.get("orders")
+        if orders is None or not all(member in orders.members for member in _HELM):
+            continue
+        ports = {member: orders.members[member] for member in _HELM}
+        variables = part.instance.variables
+        scalars = variables.ports.get(ports["manual"], [])
+        mode = variables.get(ports["mode"])
+        if len(scalars) < 2 or mode is None or mode.causality != "input":
+            continue
+        fed = system.feeders(name)
+        own = [ports["mode"], ports["armed"]]
+        first = {**ports, "manual": scalars[0].name}
+        found.append(
+            {
+                "component": name,
+                "ports": ports,
+                "axes": [scalar.name.rpartition(".")[2] for scalar in scalars],
+                "fed": [member for member in _HELM if first[member] in fed],
+                "before": dict(zip(("mode", "armed"), master.values(name, own), strict=True)),
+            }
+        )
+    return found

@@ -287,10 +287,7 @@ def _write_signals(found: Imported, path: Path, progress: Callable[[float], None
 
 
 def _manifest(
-    found: Imported,
-    format_name: str,
-    criteria: Sequence[tuple[str, str]],
-    outline: Outline | None,
+    found: Imported, format_name: str, criteria: Sequence[tuple[str, str]], outline: Outline | None
 ) -> dict[str, Any]:
     path = found.log.path
     file = {"name": path.stem, "file": path.name, "sha256": content_hash(path)}
@@ -328,11 +325,7 @@ def _manifest(
         "plots": [],
         "events": [],
         "faults": [],
-        "log": {
-            "format": format_name,
-            "serves": dict(found.serves),
-            "notes": list(found.notes),
-        },
+        "log": {"format": format_name, "serves": dict(found.serves), "notes": list(found.notes)},
         "status": "complete",
         "error": None,
     }

@@ -145,7 +145,7 @@ _MOTIONS: Mapping[str, Callable[[Any], Values]] = {
         "longitude": ("deg", message.longitude),
     },
     "sensor_msgs/msg/BatteryState": lambda message: {
-        "power": ("W", -message.voltage * message.current),  # discharge is negative (REP 147)
+        "power": ("W", -message.voltage * message.current)  # discharge is negative (REP 147)
     },
 }
 """By type of message."""

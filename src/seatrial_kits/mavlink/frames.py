@@ -11,10 +11,7 @@ from seatrial.links.geodesy import Ned
 from .vehicle import Vehicle
 
 _ABOVE_SEA = {mavlink.MAV_FRAME_GLOBAL, mavlink.MAV_FRAME_GLOBAL_INT}
-_ABOVE_HOME = {
-    mavlink.MAV_FRAME_GLOBAL_RELATIVE_ALT,
-    mavlink.MAV_FRAME_GLOBAL_RELATIVE_ALT_INT,
-}
+_ABOVE_HOME = {mavlink.MAV_FRAME_GLOBAL_RELATIVE_ALT, mavlink.MAV_FRAME_GLOBAL_RELATIVE_ALT_INT}
 GLOBAL_FRAMES = frozenset(_ABOVE_SEA | _ABOVE_HOME)
 """Frames with latitude and longitude; those above terrain, which is not known here, are not."""
 

@@ -16,7 +16,7 @@ from .service import Builder, Handler, Receiver, Service
 from .services.arming import ArmingService
 from .services.battery import BatteryService
 from .services.clock import ClockService
-from .services.commands import CommandService
+from .services.commands import CommandService, RefusalService
 from .services.failsafe import Failsafe
 from .services.failures import FailureService
 from .services.fence import FenceService
@@ -31,7 +31,6 @@ from .services.modes import ModeService
 from .services.parameters import ParameterService
 from .services.presence import PresenceService
 from .services.rally import RallyService
-from .services.refusals import RefusalService
 from .services.stations import StationService
 from .services.streams import StreamService
 from .services.transfer import TransferService

@@ -180,12 +180,7 @@ class MavlinkPorts(Logging, Reachable, TrueMotion, Sampled):
     )
     motor_speed = Input("rad/s", "shaft speeds of motors", axes=MOTORS, optional=True)
     motor_current = Input("A", "currents of motors", axes=MOTORS, optional=True)
-    pulse = Input(
-        "s",
-        "servo pulses, 0 for none",
-        axes=_CHANNELS,
-        optional=True,
-    )
+    pulse = Input("s", "servo pulses, 0 for none", axes=_CHANNELS, optional=True)
     share = Input(
         "1",
         "commands of thrusters as shares of full thrust, in the place of pulses",
@@ -209,9 +204,7 @@ class MavlinkPorts(Logging, Reachable, TrueMotion, Sampled):
     mode = Output("1", "manual, hold, loiter, guided, auto, return, ...", type=str, start="hold")
     armed = Output("1", "whether to act", type=bool)
     manual = Output(
-        "1",
-        "manual control, -1 to 1: ahead, to starboard, turn to starboard, down",
-        axes=_MANUAL,
+        "1", "manual control, -1 to 1: ahead, to starboard, turn to starboard, down", axes=_MANUAL
     )
     target_kind = Output("1", "position, velocity or heading", type=str, start="position")
     target_valid = Output("1", "whether there is a set-point", type=bool)

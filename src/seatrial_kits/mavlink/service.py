@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any, ClassVar, TypeVar
 
 from pymavlink.dialects.v20 import all as mavlink
 
@@ -32,6 +32,30 @@ Receiver = Callable[[Message, Sender, float], None]
 """Takes a message in at a simulated time, s."""
 Builder = Callable[[float], list[Message]]
 """Returns a message's content at a simulated time, s; nothing if there is none."""
+M = TypeVar("M", bound=Callable[..., Any])
+
+
+def _mark(name: str, numbers: tuple[int, ...]) -> Callable[[M], M]:
+    def marked(method: M) -> M:
+        setattr(method, name, numbers)
+        return method
+
+    return marked
+
+
+def on_command(*numbers: int) -> Callable[[M], M]:
+    """Mark the `Handler` of commands, by MAV_CMD."""
+    return _mark("on_command", numbers)
+
+
+def on_message(*numbers: int) -> Callable[[M], M]:
+    """Mark the `Receiver` of messages, by number."""
+    return _mark("on_message", numbers)
+
+
+def builds(*numbers: int) -> Callable[[M], M]:
+    """Mark the `Builder` of messages, by number."""
+    return _mark("builds", numbers)
 
 
 class Service:
@@ -53,18 +77,26 @@ class Service:
 
     @property
     def receivers(self) -> Mapping[int, Receiver]:
-        """Messages that it takes in, by number; asked for once."""
-        return {}
+        """Messages that it takes in, by number: methods marked with `on_message`."""
+        return self._marked("on_message")
 
     @property
     def commands(self) -> Mapping[int, Handler]:
-        """Commands that it carries out."""
-        return {}
+        """Commands that it carries out: methods marked with `on_command`."""
+        return self._marked("on_command")
 
     @property
     def messages(self) -> Mapping[int, Builder]:
-        """Messages that it can build."""
-        return {}
+        """Messages that it can build: methods marked with `builds`."""
+        return self._marked("builds")
+
+    def _marked(self, mark: str) -> dict[int, Any]:
+        return {
+            number: getattr(self, name)
+            for kind in reversed(type(self).__mro__)
+            for name, each in vars(kind).items()
+            for number in getattr(each, mark, ())
+        }
 
     def tick(self, now: float) -> None:
         """Let time pass: called once per instant, after its messages."""

@@ -12,7 +12,7 @@ from seatrial.trial.files.trial import Trial
 from .orders import DIVES, MOORED, NEEDS, PITCHES, STAYS, STEERS, STOPS
 
 _LACKING = {
-    STEERS: "its pilot takes no order of speed: the wind drives it",
+    STEERS: "its pilot takes no order of speed: the wind drives it, or its buoyancy",
     STOPS: "no command reaches its propulsion",
     STAYS: "its pilot keeps it under way: it does not turn or stay without speed",
     DIVES: "its pilot holds no depth",
@@ -61,7 +61,7 @@ def _able(rig: _Rig) -> frozenset[str]:
 
 def abilities(system: System) -> frozenset[str]:
     """Return what the vehicle of a rig can do, among the abilities of `orders`."""
-    if any(part.fmu == "sailing-guidance" for part in system.parts.values()):
+    if any(_is_driven(part) for part in system.parts.values()):
         return frozenset()
     found = {STEERS}
     for part in system.parts.values():
@@ -79,6 +79,13 @@ def abilities(system: System) -> frozenset[str]:
                 found.add(STAYS)
     without = {STAYS, MOORED} if STOPS not in found else {MOORED} if PITCHES in found else set()
     return frozenset(found - without)
+
+
+def _is_driven(part: Part) -> bool:
+    """Return whether a pilot has that part whose craft is driven by wind or buoyancy."""
+    return part.fmu == "sailing-guidance" or (
+        part.fmu == "helm" and _value(part, "surge_limit") == 0.0
+    )
 
 
 def _value(part: Part, name: str) -> object:

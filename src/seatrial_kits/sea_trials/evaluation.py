@@ -13,8 +13,7 @@ from seatrial.errors import InputError, unknown
 from .figures.course_stability import loop, pull_out, spiral, stability
 from .figures.criteria import SHIP, Verdict, imo
 from .figures.handling import station_box, turn_on_the_spot, williamson
-from .figures.nomoto import nomoto
-from .figures.nomoto_second import nomoto_second
+from .figures.nomoto import nomoto, nomoto_second
 from .figures.record import Array, Record
 from .figures.result import Figure, Figures
 from .figures.straight import acceleration, bollard_pull, speed_trial, stopping

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, NamedTuple
 
 import numpy as np
 import typer
@@ -17,10 +17,9 @@ from seatrial.errors import InputError
 from seatrial.fmi.components.index import component_class
 from seatrial.model.readable import number
 from seatrial.physics.craft.marine_craft import MarineCraft
+from seatrial.physics.sea.numbers import Array
 from seatrial.system.assembly import assemble
 from seatrial.system.flattening import load_rig
-
-from .figures.stability import ANGLES, Stability
 
 _SHOWN = (*range(0, 91, 10), 120, 150)
 _LEAST_LENGTH = 24.0
@@ -89,3 +88,64 @@ def _content(found: Stability) -> dict[str, Any]:
         "largest_arm_at_rad": angle,
         "criteria": [{**each._asdict(), "holds": each.holds} for each in found.criteria()],
     }
+
+
+ANGLES = np.radians(np.arange(0.0, 181.0, 1.0))
+"""Angles of heel that a curve is asked for, rad."""
+
+
+class Criterion(NamedTuple):
+    """A figure, and the least that is allowed."""
+
+    name: str
+    found: float
+    least: float
+    unit: str
+
+    @property
+    def holds(self) -> bool:
+        """Whether it is kept."""
+        return self.found >= self.least
+
+
+class Stability(NamedTuple):
+    """A curve GZ, m, at `ANGLES`, by its figures; SI and radians."""
+
+    arms: Array
+    GM: float
+    """Its slope at rest, m."""
+
+    @property
+    def vanishing(self) -> float:
+        """Least angle from which on the arm capsizes; pi if there is none, 0 without GM."""
+        after = np.flatnonzero(self.arms[1:-1] <= 0.0)
+        if not len(after) or self.GM <= 0.0:
+            return math.pi if self.GM > 0.0 else 0.0
+        k = int(after[0])
+        before, beyond = self.arms[k], self.arms[k + 1]
+        return float(ANGLES[k] + (ANGLES[k + 1] - ANGLES[k]) * before / (before - beyond))
+
+    @property
+    def largest(self) -> tuple[float, float]:
+        """Largest arm before that, m, and its angle."""
+        k = int(np.argmax(np.where(self.vanishing >= ANGLES, self.arms, -np.inf)))
+        return float(self.arms[k]), float(ANGLES[k])
+
+    def area(self, start: float, end: float) -> float:
+        """Return the area below the curve between two angles, m rad, to where it vanishes."""
+        phi = np.linspace(start, max(start, min(end, self.vanishing)), 401)
+        return float(np.trapezoid(np.interp(phi, ANGLES, self.arms), phi))
+
+    def criteria(self) -> list[Criterion]:
+        """Return those of the International Code on Intact Stability, 2008, part A, 2.2."""
+        thirty, forty = math.radians(30.0), math.radians(40.0)
+        _, angle = self.largest
+        beyond = np.where((thirty - 1e-9 <= ANGLES) & (self.vanishing >= ANGLES), self.arms, 0.0)
+        return [
+            Criterion("area to 30 deg", self.area(0.0, thirty), 0.055, "m.rad"),
+            Criterion("area to 40 deg", self.area(0.0, forty), 0.090, "m.rad"),
+            Criterion("area from 30 to 40 deg", self.area(thirty, forty), 0.030, "m.rad"),
+            Criterion("largest arm from 30 deg on", float(beyond.max()), 0.20, "m"),
+            Criterion("angle of the largest arm", math.degrees(angle), 25.0, "deg"),
+            Criterion("GM", self.GM, 0.15, "m"),
+        ]

@@ -8,20 +8,12 @@ from typing import Any, ClassVar
 
 from seatrial.errors import InputError
 from seatrial.links.text import Inbox, Outbox
-from seatrial.model.component import (
-    NS,
-    Component,
-    Input,
-    Logging,
-    Output,
-    Parameter,
-    terminal,
-)
+from seatrial.model.component import NS, Input, Output, Parameter, terminal
 
 from .frame import VRCSR, Frame, encode
-from .half_duplex import HalfDuplex
+from .half_duplex import HalfDuplex, LineEnd
 from .parser import Parser
-from .stream_file import FROM_DEVICE, TO_DEVICE, StreamLog
+from .stream_file import FROM_DEVICE, TO_DEVICE
 from .vrcsr import Health, ThrusterNode
 
 MOST = 6
@@ -32,7 +24,7 @@ OVERTEMPERATURE = 8
 """Fault bit; the others have no public meaning."""
 
 
-class M5Thrusters(Logging, Component):
+class M5Thrusters(LineEnd):
     """Up to six M5 thrusters: VRCSR in, shares of thrust, rpm, V, A and temperature out.
 
     ``nodes`` are their node ids; motor ids count from 0 in their order. ``rx`` and ``tx`` are bytes
@@ -51,8 +43,7 @@ class M5Thrusters(Logging, Component):
     none; set those of your data sheet.
     """
 
-    discrete = True
-    transient = Component.transient | {"_nodes", "_parser", "_line", "_log"}
+    transient = LineEnd.transient | {"_nodes"}
 
     nodes = Parameter("1 2 3", "1", "node ids, separated by spaces")
     baud = Parameter(115_200.0, "1/s", "baud rate", min=300.0, max=1e7)
@@ -82,23 +73,14 @@ class M5Thrusters(Logging, Component):
 
     terminals: ClassVar = {"serial": terminal(down="rx", up="tx")}
 
-    def __init__(self, name: str = "component") -> None:
-        super().__init__(name)
-        self._log = StreamLog()
-
     def start(self, t: float) -> None:
         """Start at rest, as warm as the water."""
-        self._log.close()
-        self._log = StreamLog()
-        self._build()
+        super().start(t)
         count = len(self._nodes)
         self._speed = [0.0] * count
         self._warmth = [self.water_temperature] * count
         self._tripped = [0] * count
         self._received_ns = [-1] * count
-        self._waiting: list[list[Any]] = []
-        self._rx: dict[str, Any] = {}
-        self._tx: dict[str, Any] = {}
 
     def step(self, t: float, h: float) -> None:
         """Receive and answer what is complete before ``t + h``, and turn until then."""
@@ -132,27 +114,12 @@ class M5Thrusters(Logging, Component):
         self.faults = (*faults, *(0 for _ in idle))
         self.errors = self._parser.checksum_errors + self._parser.broken_off
 
-    def close(self) -> None:
-        """End the record of the stream."""
-        self._log.close()
+    def _saved(self) -> dict[str, Any]:
+        return {"nodes": [[node.memory.hex(), node.requested] for node in self._nodes]}
 
-    def get_state(self) -> dict[str, Any]:
-        """Return a copy of the whole state, the nodes' included, as plain data."""
-        parts = {
-            "nodes": [[node.memory.hex(), node.requested] for node in self._nodes],
-            "parser": self._parser.saved(),
-            "free_ns": self._line.free_ns,
-        }
-        return {**super().get_state(), "parts": parts}
-
-    def set_state(self, state: Mapping[str, Any]) -> None:
-        """Restore what `get_state` returned."""
-        super().set_state({name: value for name, value in state.items() if name != "parts"})
-        self._build()
-        for node, (memory, requested) in zip(self._nodes, state["parts"]["nodes"], strict=True):
+    def _restore(self, parts: Mapping[str, Any]) -> None:
+        for node, (memory, requested) in zip(self._nodes, parts["nodes"], strict=True):
             node.memory[:], node.requested = bytes.fromhex(memory), requested
-        self._parser.restore(state["parts"]["parser"])
-        self._line.free_ns = state["parts"]["free_ns"]
 
     # ------------------------------------------------------------------ inside
 

@@ -72,9 +72,7 @@ def read(number: int, data: bytes) -> Reading | None:
     if len(data) != struct.calcsize(form):
         return None
     raw = struct.unpack(form, data)
-    return Reading(
-        {name: n * BY_NAME[name].scale for name, n in zip(names, raw, strict=True)},
-    )
+    return Reading({name: n * BY_NAME[name].scale for name, n in zip(names, raw, strict=True)})
 
 
 def read_memory(address: int, data: bytes) -> Reading:

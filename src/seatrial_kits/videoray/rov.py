@@ -8,20 +8,19 @@ from typing import Any
 
 from seatrial.errors import InputError
 from seatrial.links.text import Inbox, Outbox
-from seatrial.model.component import NS, Component
+from seatrial.model.component import NS
 
 from .auto_loop import AutoLoop
 from .drive import Drive, share_of_thrust
 from .frame import Frame, encode
-from .gains import GAINS
-from .half_duplex import HalfDuplex
+from .half_duplex import HalfDuplex, LineEnd
 from .identity import make_identity
 from .node import RovNode
 from .parser import Parser
 from .power_manager import manage
-from .registers import BY_NAME, OFF, factory_memory, put, read_settings
+from .registers import BY_NAME, GAINS, OFF, factory_memory, put, read_settings
 from .rov_ports import Pro4RovPorts
-from .stream_file import FROM_DEVICE, TO_DEVICE, StreamLog
+from .stream_file import FROM_DEVICE, TO_DEVICE
 
 _MBAR = 100.0
 _CELSIUS = 273.15
@@ -66,22 +65,14 @@ class Pro4Rov(Pro4RovPorts):
     Raises InputError at the start for an identity, version or register that cannot be.
     """
 
-    discrete = True
-    transient = Component.transient | {"_node", "_parser", "_line", "_loops", "_drive", "_log"}
-
-    def __init__(self, name: str = "component") -> None:
-        super().__init__(name)
-        self._log = StreamLog()
+    transient = LineEnd.transient | {"_node", "_loops", "_drive"}
 
     # ------------------------------------------------------------------ running
 
     def start(self, t: float) -> None:
         """Start as after a reboot, with nothing received."""
-        self._log.close()
-        self._log = StreamLog()
-        self._build()
+        super().start(t)
         self._began_ns = self._next_ns = self.now_ns
-        self._waiting: list[list[Any]] = []
         self._driven = False
         self._received_ns = 0
         self._changes, self._published = 0, -1
@@ -91,8 +82,6 @@ class Pro4Rov(Pro4RovPorts):
         self._power = 1.0
         self._duties = [0.0, 0.0, 0.0]
         self._text = ""
-        self._rx: dict[str, Any] = {}
-        self._tx: dict[str, Any] = {}
         self._accessory: dict[str, Any] = {}
         self._measure()
 
@@ -143,29 +132,12 @@ class Pro4Rov(Pro4RovPorts):
         self.node_id, self.requests = node.node_id, node.requests
         self.communication_errors = self._errors
 
-    def close(self) -> None:
-        """End the record of the stream."""
-        self._log.close()
+    def _saved(self) -> dict[str, Any]:
+        loops = [loop.saved() for loop in self._loops]
+        return {"node": self._node.saved(), "loops": loops, "commands": list(self._drive.commands)}
 
-    def get_state(self) -> dict[str, Any]:
-        """Return a copy of the whole state, the node's included, as plain data."""
-        parts = {
-            "node": self._node.saved(),
-            "parser": self._parser.saved(),
-            "free_ns": self._line.free_ns,
-            "loops": [loop.saved() for loop in self._loops],
-            "commands": list(self._drive.commands),
-        }
-        return {**super().get_state(), "parts": parts}
-
-    def set_state(self, state: Mapping[str, Any]) -> None:
-        """Restore what `get_state` returned."""
-        super().set_state({name: value for name, value in state.items() if name != "parts"})
-        self._build()
-        parts = state["parts"]
+    def _restore(self, parts: Mapping[str, Any]) -> None:
         self._node.restore(parts["node"])
-        self._parser.restore(parts["parser"])
-        self._line.free_ns = parts["free_ns"]
         for loop, saved in zip(self._loops, parts["loops"], strict=True):
             loop.restore(saved)
         self._drive.commands = list(parts["commands"])

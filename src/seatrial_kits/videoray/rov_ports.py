@@ -6,9 +6,7 @@ import math
 from typing import ClassVar
 
 from seatrial.model.component import (
-    Component,
     Input,
-    Logging,
     Output,
     Parameter,
     Terminal,
@@ -17,13 +15,13 @@ from seatrial.model.component import (
 from seatrial.model.unit_table import STANDARD_GRAVITY
 
 from .drive import SLEW_UNITS, THRUSTERS
-from .gains import GAINS
-from .registers import check_settings
+from .half_duplex import LineEnd
+from .registers import GAINS, read_settings
 
 _XYZ = ("x", "y", "z")
 
 
-class Pro4RovPorts(Logging, Component):
+class Pro4RovPorts(LineEnd):
     """Parameters, inputs and outputs of `Pro4Rov`."""
 
     baud = Parameter(115_200.0, "1/s", "baud rate", min=300.0, max=1e7)
@@ -41,7 +39,7 @@ class Pro4RovPorts(Logging, Component):
     )
     gains = Parameter("captured", "1", "named set of gains and slew rates", choices=tuple(GAINS))
     registers = Parameter(
-        "", "1", "stored registers that differ: NAME VALUE; ...", check=check_settings
+        "", "1", "stored registers that differ: NAME VALUE; ...", check=read_settings
     )
     storing = Parameter(
         "at-once",

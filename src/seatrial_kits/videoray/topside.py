@@ -7,14 +7,14 @@ from collections.abc import Mapping
 from typing import Any
 
 from seatrial.links.text import Inbox, Outbox
-from seatrial.model.component import NS, Component
+from seatrial.model.component import NS
 
 from .frame import encode
-from .half_duplex import HalfDuplex
+from .half_duplex import HalfDuplex, LineEnd
 from .nmea import sentences
 from .parser import Parser
 from .station import PHASES, Commands, Station, manipulator_request
-from .stream_file import FROM_DEVICE, TO_DEVICE, StreamLog
+from .stream_file import FROM_DEVICE, TO_DEVICE
 from .topside_ports import Pro4TopsidePorts
 
 _MBAR = 100.0
@@ -47,27 +47,17 @@ class Pro4Topside(Pro4TopsidePorts):
     It records its stream in ``run_folder``, ``NAME.stream`` (`StreamLog`).
     """
 
-    discrete = True
-    transient = Component.transient | {"_station", "_parser", "_line", "_log"}
-
-    def __init__(self, name: str = "component") -> None:
-        super().__init__(name)
-        self._log = StreamLog()
+    transient = LineEnd.transient | {"_station"}
 
     # ------------------------------------------------------------------ running
 
     def start(self, t: float) -> None:
         """Start with no vehicle."""
-        self._log.close()
-        self._log = StreamLog()
-        self._build()
+        super().start(t)
         self._begun_ns = self._next_ns = self.now_ns
         self._next_nmea_ns = self.now_ns + NS
         self._manipulated = 0
-        self._waiting: list[list[Any]] = []
         self._text = ""
-        self._rx: dict[str, Any] = {}
-        self._tx: dict[str, Any] = {}
         self._nmea: dict[str, Any] = {}
         self._errors = 0
         self._changes, self._published = 0, -1
@@ -125,26 +115,11 @@ class Pro4Topside(Pro4TopsidePorts):
             self.water_temperature = readings["water_temperature"] + _CELSIUS
             self.humidity, self.power = readings["humidity"], readings["total_power"]
 
-    def close(self) -> None:
-        """End the record of the stream."""
-        self._log.close()
+    def _saved(self) -> dict[str, Any]:
+        return {"station": self._station.saved()}
 
-    def get_state(self) -> dict[str, Any]:
-        """Return a copy of the whole state, the station's included, as plain data."""
-        parts = {
-            "station": self._station.saved(),
-            "parser": self._parser.saved(),
-            "free_ns": self._line.free_ns,
-        }
-        return {**super().get_state(), "parts": parts}
-
-    def set_state(self, state: Mapping[str, Any]) -> None:
-        """Restore what `get_state` returned."""
-        super().set_state({name: value for name, value in state.items() if name != "parts"})
-        self._build()
-        self._station.restore(state["parts"]["station"])
-        self._parser.restore(state["parts"]["parser"])
-        self._line.free_ns = state["parts"]["free_ns"]
+    def _restore(self, parts: Mapping[str, Any]) -> None:
+        self._station.restore(parts["station"])
 
     # ------------------------------------------------------------------ inside
 

@@ -5,20 +5,15 @@ from __future__ import annotations
 import math
 from typing import ClassVar
 
-from seatrial.model.component import (
-    Component,
-    Input,
-    Logging,
-    Output,
-    Parameter,
-    terminal,
-)
+from seatrial.model.component import Input, Output, Parameter, terminal
 from seatrial.model.unit_table import STANDARD_GRAVITY
+
+from .half_duplex import LineEnd
 
 _XYZ = ("x", "y", "z")
 
 
-class Pro4TopsidePorts(Logging, Component):
+class Pro4TopsidePorts(LineEnd):
     """Parameters, inputs and outputs of `Pro4Topside`."""
 
     period = Parameter(0.1, "s", "period of the command block", min=1e-3)

@@ -11,7 +11,7 @@ import serial
 from seatrial.errors import InputError, SimulationError
 from seatrial_kits.arduino.component import Arduino
 from seatrial_kits.arduino.dialect import narrowed
-from seatrial_kits.arduino.prototypes import with_prototypes
+from seatrial_kits.arduino.sketch import with_prototypes
 
 from .bench import Bench, write_sketch
 

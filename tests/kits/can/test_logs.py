@@ -7,10 +7,10 @@ import can
 import pytest
 
 from seatrial.errors import SimulationError
-from seatrial_kits.can.bus_log import BusLog
 from seatrial_kits.can.frame import Frame
 from seatrial_kits.can.messages import frame_of
 from seatrial_kits.can.operations import Error
+from seatrial_kits.can.run_log import BusLog
 
 from .scripted import MS, Scripted, bus
 

@@ -16,7 +16,7 @@ from urllib.parse import urlsplit
 import pytest
 
 from seatrial.trial.records.run_folder import load_run
-from seatrial.trial.reports.dark import DARK
+from seatrial.trial.reports.figure import DARK
 from seatrial.trial.reports.report import write_report
 from seatrial_kits.live.stage import played
 

@@ -19,7 +19,7 @@ from seatrial.trial.records.run_folder import load_run
 from seatrial.trial.running.hooks import Hooks
 from seatrial.trial.running.run import Result, run_trial
 from seatrial_kits.live.by_hand import ByHand
-from seatrial_kits.live.history import History
+from seatrial_kits.live.live_page import History
 from seatrial_kits.live.tap import Tap
 
 KEEPER = "autopilot.keeper.station"

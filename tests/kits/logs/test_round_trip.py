@@ -18,11 +18,11 @@ from seatrial.links.text import Inbox
 from seatrial.trial.logs.formats import format_of, read_log
 from seatrial.trial.logs.steady_clock import steady
 from seatrial.trial.records.run_folder import load_run
-from seatrial_kits.can.bus_log import BusLog
 from seatrial_kits.can.frame import Frame
 from seatrial_kits.can.operations import Transmit, decode
 from seatrial_kits.can.player import CanPlayer
 from seatrial_kits.can.recorded import recorded_frames
+from seatrial_kits.can.run_log import BusLog
 from seatrial_kits.logs.imported import Wanted, imported, write_run
 from seatrial_kits.logs.mcap_file import write_mcap
 from seatrial_kits.logs.parquet_file import write_parquet

@@ -6,8 +6,8 @@ import pytest
 from pymavlink.dialects.v20 import all as mavlink
 
 from seatrial.links.servos import read_servos
-from seatrial_kits.mavlink.innovation import Innovation
 from seatrial_kits.mavlink.outputs import Outputs
+from seatrial_kits.mavlink.telemetry.estimator import Innovation
 from seatrial_kits.mavlink.vehicle import Receiver
 
 from .bench import Bench

@@ -25,7 +25,7 @@ from seatrial_kits.mavlink.parameters.definition import (
     shortest,
 )
 from seatrial_kits.mavlink.parameters.file import ParameterFile
-from seatrial_kits.mavlink.parameters.px4 import px4_parameters
+from seatrial_kits.mavlink.parameters.parameters import px4_parameters
 from seatrial_kits.mavlink.parameters.table import ParameterTable
 from seatrial_kits.mavlink.parameters.tunable import tunable_parameters, with_tunables
 from seatrial_kits.mavlink.settings import COMPASS_CHECK, GPS_CHECK, Settings

@@ -8,8 +8,7 @@ from hypothesis import strategies as st
 from pymavlink import mavwp
 
 from seatrial.errors import InputError
-from seatrial_kits.mavlink.missions.plan import Plans
-from seatrial_kits.mavlink.missions.plan_file import read_items, write_items
+from seatrial_kits.mavlink.missions.plan import Plans, read_items, write_items
 from seatrial_kits.mavlink.missions.plan_items import NOT_GIVEN, Item, from_message
 
 from .bench import Bench

@@ -19,10 +19,15 @@ from seatrial_kits.sea_trials.abilities import reason_against
         ("remus100", "vertical-zig-zag", None),
         ("otter", "depth-step", "its pilot holds no depth"),
         ("otter", "bollard-pull", None),
-        ("kvlcc2", "bollard-pull", r"its \[mooring\] has no line, or fins alone hold its pitch, which need speed"),
+        (
+            "kvlcc2",
+            "bollard-pull",
+            r"its \[mooring\] has no line, or fins alone hold its pitch, which need speed",
+        ),
         ("remus100", "bollard-pull", ".*fins alone hold its pitch"),
         ("bluerov2", "vertical-zig-zag", "its pilot does not dive by pitch"),
         ("bluerov2", "station-keeping", None),
+        ("glider", "turning-circle", "its pilot takes no order of speed"),
     ],
 )
 def test_a_vehicle_does_what_it_can(vehicle, trial, reason):

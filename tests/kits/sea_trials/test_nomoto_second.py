@@ -7,7 +7,7 @@ import pytest
 from scipy.signal import lsim
 
 from seatrial.errors import InputError
-from seatrial_kits.sea_trials.figures.nomoto_second import nomoto_second
+from seatrial_kits.sea_trials.figures.nomoto import nomoto_second
 from seatrial_kits.sea_trials.figures.record import Record
 
 K, T1, T2, T3 = 0.185, 118.0, 7.8, 18.5

@@ -6,7 +6,7 @@ import math
 import numpy as np
 import pytest
 
-from seatrial_kits.sea_trials.figures.stability import ANGLES, Stability
+from seatrial_kits.sea_trials.stability import ANGLES, Stability
 from tests.command import seatrial
 
 

@@ -7,12 +7,12 @@ from typing import ClassVar, NamedTuple
 
 from ...model.component import Input, Output, Parameter, terminal
 from ..guidance_motion import BEAT, FOLLOW, MANUAL, NEUTRAL, Command
-from ..guidance_orders import Decision, GuidanceOrders
+from ..guidance_orders import TASKS, Decision, GuidanceOrders
 from ..guidance_path import Point, bearing
 from ..lookout import OBSTACLE, Track, clear_heading, placed, watched
 from .course import Laid, laid, side, turn, turned
 
-MODES = ("manual", "hold", "guided", "auto", "return", "loiter")
+MODES = ("manual", *TASKS)
 """Values of the input ``mode``."""
 
 SLOTS = tuple(f"d{number}" for number in range(1, 7))

@@ -1,7 +1,6 @@
 """Dependencies of outputs at the same instant, found from what a component is made of.
 
-`found` answers for a class: from the sparsity of a plant's expressions (`equations`), and from the
-Python text of everything else (`interpreter`). `perturbation` tries what a declaration narrows,
-`names` looks for ports that a mistyped name leaves out, and `checked` remembers the answers by
-the hash of the code.
+`found` answers for a class: from the sparsity of a plant's expressions, and from the Python text of
+everything else (`interpreter`). `checked` tries what a declaration narrows, looks for ports that a
+mistyped name leaves out, and remembers the answers by the hash of the code.
 """

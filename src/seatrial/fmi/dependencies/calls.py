@@ -5,21 +5,18 @@ from __future__ import annotations
 import ast
 import dataclasses
 import inspect
-import math
-import operator
 import re
 import types
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
 from typing import Any
 
 from ...model.plant import Plant
 from .expressions import Expressions
-from .frame import Frame
 from .text import tree_of
-from .values import NONE, NOTHING, Callee, Value, computed, constant, joined, mixed
+from .values import NONE, NOTHING, Callee, Inputs, Value, computed, constant, joined, mixed
 
 _DEEPEST = 60
-_KEEPS_NOTHING = (math, operator)
 _OPAQUE = (eval, exec, locals, globals, compile, __import__)
 _SCALARS = (float, int, bool, str, bytes, complex, len, abs, round, any, all, repr, ord, chr)
 _COPIES = (tuple, list, set, frozenset, dict, range)
@@ -343,3 +340,16 @@ def _pattern(value: Value) -> re.Pattern[str] | None:
 def _text(value: Value) -> str | None:
     found = None if value.known is None else value.known.object
     return found if isinstance(found, str) else None
+
+
+@dataclass
+class Frame:
+    """One call of a function."""
+
+    names: dict[str, Value]
+    code: Callee
+    left: Inputs = NONE
+    """What it follows from that the rest of the function runs at all."""
+    returned: Value | None = None
+    broken: list[list[dict[str, Value]]] = field(default_factory=list)
+    """Names as they are where the loops around are left early."""

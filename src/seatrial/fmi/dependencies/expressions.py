@@ -9,16 +9,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from .attributes import Attributes
-from .values import (
-    NONE,
-    NOTHING,
-    Callee,
-    Value,
-    computed,
-    constant,
-    joined,
-    mixed,
-)
+from .values import NONE, NOTHING, Callee, Value, computed, constant, joined, mixed
 
 _FIXED = (int, float, complex, bool, str, bytes, type(None), tuple, frozenset, range)
 _MISSING = object()

@@ -15,8 +15,7 @@ import sys
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 
-from .calls import Calls
-from .frame import Frame
+from .calls import Calls, Frame
 from .values import NONE, NOTHING, SHARED, Inputs, UndecidedError, Value, joined, mixed
 
 _MOST_PASSES = 30

@@ -251,9 +251,7 @@ def _alias(entry: Variable | Entry, alias: Any) -> Variable | Entry:
     """Return a variable under another name."""
     like = _like(entry)
     changed = replace(
-        like,
-        name=alias.get("name") or "",
-        description=alias.get("description") or like.description,
+        like, name=alias.get("name") or "", description=alias.get("description") or like.description
     )
     if not changed.name:
         raise InputError(f"an alias of {like.name!r} has no name")

@@ -21,12 +21,10 @@ from ..files.osp import read_osp
 from ..files.terminals import read_terminals
 from ..files.variables import described, views_of
 from ..instance import Instance
-from ..interfaces.fmi1 import Fmi1Slave
-from ..interfaces.fmi1model import Fmi1Model
-from ..interfaces.fmi2 import Fmi2Slave
-from ..interfaces.fmi2model import Fmi2Model
+from ..interfaces.fmi1 import Fmi1Model, Fmi1Slave
+from ..interfaces.fmi2 import Fmi2Model, Fmi2Slave
+from ..interfaces.fmi3 import Fmi3Model
 from ..interfaces.fmi3clocks import Fmi3ClockedSlave
-from ..interfaces.fmi3model import Fmi3Model
 from ..interfaces.fmi3slave import Fmi3Slave
 from ..interfaces.loaded import LoadedFmu
 from .built import with_library

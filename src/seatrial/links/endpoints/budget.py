@@ -33,10 +33,7 @@ class Budget:
     """
 
     def __init__(
-        self,
-        rate: float = RATE,
-        least: int = LEAST,
-        clock: Callable[[], float] = time.monotonic,
+        self, rate: float = RATE, least: int = LEAST, clock: Callable[[], float] = time.monotonic
     ) -> None:
         self._rate, self._least, self._clock = rate, least, clock
         self._last = clock()

@@ -19,12 +19,7 @@ LONGEST_QUEUE = 1 << 18
 RETRY_S = 1.0
 """Wall time between two attempts to connect."""
 
-_LIVENESS = {
-    "TCP_KEEPIDLE": 2,
-    "TCP_KEEPINTVL": 1,
-    "TCP_KEEPCNT": 3,
-    "TCP_USER_TIMEOUT": 10_000,
-}
+_LIVENESS = {"TCP_KEEPIDLE": 2, "TCP_KEEPINTVL": 1, "TCP_KEEPCNT": 3, "TCP_USER_TIMEOUT": 10_000}
 """tcp(7): a connection whose peer acknowledges nothing is broken off after 10 s."""
 
 _Address = tuple[str, int]

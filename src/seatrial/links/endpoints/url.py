@@ -26,9 +26,9 @@ from ...plugins import Registry
 from ..hardware import check_host, check_listening, check_serial_port, resolved
 from ..own_terminals import is_own
 from .budget import ALL_RATE, RATE, Budget
+from .descriptor import SerialEndpoint
 from .endpoint import Endpoint
 from .pseudo_terminal import PseudoTerminal
-from .serial_port import SerialEndpoint
 from .tcp import TcpClient, TcpServer
 from .udp import UdpListener, UdpSender
 

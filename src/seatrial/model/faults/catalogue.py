@@ -174,10 +174,7 @@ STREAMS = {
         "packets that others overtake",
         ("stream",),
         "chunk k comes `time` later than its order with probability s p",
-        {
-            "probability": Setting("probability", "p"),
-            "time": Setting("duration", "how much later"),
-        },
+        {"probability": Setting("probability", "p"), "time": Setting("duration", "how much later")},
         grows=True,
     ),
     "duplicate": Kind(
@@ -216,10 +213,7 @@ DEVICES = {
         {},
     ),
     "delayed": Kind(
-        "a late device",
-        ("device",),
-        "10 sample periods late; commands 0.5 s late",
-        {},
+        "a late device", ("device",), "10 sample periods late; commands 0.5 s late", {}
     ),
     "intermittent": Kind(
         "a loose contact",
@@ -228,10 +222,7 @@ DEVICES = {
         {},
     ),
     "babbling": Kind(
-        "a node that never stops to send",
-        ("bus",),
-        "frames of identifier 0 without a pause",
-        {},
+        "a node that never stops to send", ("bus",), "frames of identifier 0 without a pause", {}
     ),
     "defective": Kind(
         "a node with a broken transmitter, until it is bus-off",

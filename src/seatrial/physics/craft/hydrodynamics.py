@@ -23,10 +23,9 @@ from ...errors import InputError, unknown
 from ...plugins import Registry
 from .context import Context
 from .coupled_damping import coupled_damping
-from .hull_lift import hull_lift
 from .hull_points import floating, point_drag, wave_making, wet
 from .morison import morison
-from .slender import body_lift, fading_damping
+from .slender import body_lift, fading_damping, hull_lift
 from .winged_body import winged_body
 
 Term = Callable[[Context], Any]

@@ -170,11 +170,7 @@ def _cubic(nu: Any, rudder: Any, p: SimpleNamespace) -> Any:
     factors = {"u": u, "v": v, "r": r, "d": rudder}
     X, Y, N = (
         polynomial(terms, coefficients, factors)
-        for terms, coefficients in (
-            (_SURGE_TERMS, p.X),
-            (_SWAY_TERMS, p.Y),
-            (_SWAY_TERMS, p.N),
-        )
+        for terms, coefficients in ((_SURGE_TERMS, p.X), (_SWAY_TERMS, p.Y), (_SWAY_TERMS, p.N))
     )
     return U / p.length * scale * ca.solve(_mass_matrix(p), ca.vertcat(X, Y, N))
 

@@ -163,7 +163,7 @@ class Multirotor(Plant):
         own = rotation_matrix(p.attitude_start) @ _of_quaternion(x.turn)
         deck = rotation_matrix(u.deck_attitude)
         place = deck.T @ (x.position - u.deck_position)
-        legs = Legs(_seen(x), u, p, own, deck, place)
+        legs = Legs(SimpleNamespace(velocity=x.velocity_n, rates=x.rates), u, p, own, deck, place)
         air = own.T @ (x.velocity_n - u.wind)
         rotors = _Rotors(x, u, p, deck.T @ own, deck, place, air)
         height = ca.fmax(p.pad[2] - p.feet[2] - place[2], 0)
@@ -240,10 +240,6 @@ def _drag(air: Any, x: Any, p: Any, hover: Any) -> Any:
     share = ca.sum1(x.rotor_speed) / 4 / hover
     along = ca.vertcat(air[0], air[1], 0)
     return -0.5 * p.density * p.drag_area * speed * air - p.rotor_drag * share * along
-
-
-def _seen(x: Any) -> SimpleNamespace:
-    return SimpleNamespace(velocity=x.velocity_n, rates=x.rates)
 
 
 def _of_quaternion(q: Any) -> Any:

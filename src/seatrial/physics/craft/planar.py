@@ -52,9 +52,7 @@ class PlanarCraft(ThroughWater, WaveHull, Seaway):
     position = Output("m", "body origin in north-east-down; z = 0", axes="xyz", frame="n")
     attitude = Output("rad", "Euler angles, ZYX; theta = 0", axes=("phi", "theta", "psi"))
     velocity = Output(
-        "m/s",
-        "velocity of the body origin over ground, body axes; w = 0",
-        axes=("u", "v", "w"),
+        "m/s", "velocity of the body origin over ground, body axes; w = 0", axes=("u", "v", "w")
     )
     rates = Output("rad/s", "angular velocity, body axes; q = 0", axes=("p", "q", "r"))
     acceleration = Output(

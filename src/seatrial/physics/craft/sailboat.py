@@ -152,10 +152,7 @@ class Sailboat(PlanarCraft):
         axes=("speed", "angle"),
     )
 
-    terminals: ClassVar = {
-        **PlanarCraft.terminals,
-        "angles": terminal("rudder", "sail", "flap"),
-    }
+    terminals: ClassVar = {**PlanarCraft.terminals, "angles": terminal("rudder", "sail", "flap")}
     feedthrough: ClassVar = {
         **PlanarCraft.feedthrough,
         **dict.fromkeys(("nu_r", "flow"), ("current",)),

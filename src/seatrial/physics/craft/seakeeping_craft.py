@@ -144,10 +144,7 @@ class SeakeepingCraft(MarineCraft):
         driven = _coupling(p) @ velocity_through_water(rotation_matrix(x.attitude), nu, u)
         p_dot = driven - _damping(p) @ modes - p.memory_omega * springs
         memory = ca.vertcat(p_dot, p.memory_omega * modes)
-        return {**vars(changes), "memory": memory}, {
-            **outputs,
-            "radiation_missed": p.memory_missed,
-        }
+        return {**vars(changes), "memory": memory}, {**outputs, "radiation_missed": p.memory_missed}
 
     # ------------------------------------------------------------------ inside
 

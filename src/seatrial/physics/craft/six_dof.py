@@ -21,13 +21,12 @@ from ...model.terminals import ATTACHMENT
 from ..sea.loads import Response
 from .context import Context, wrench
 from .coupled_damping import CoupledDamping
-from .hull_lift import HullLift
 from .hull_points import HullPoints, wet
 from .hydrodynamics import TERMS, Term, read_terms, symmetric
 from .inertia import require_positive_definite
 from .morison import Morison
 from .seaway import Places, Seaway
-from .slender import Slender
+from .slender import HullLift, Slender
 from .symbolic import euler_rate_matrix, rotation_matrix, skew
 from .through_water import ThroughWater, flow_outputs
 from .winged_body import WingedBody

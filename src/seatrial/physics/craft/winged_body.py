@@ -67,7 +67,5 @@ def _to_body(alpha: Any, beta: Any) -> Any:
     """Return the rotation from the flow frame to {b}: about -z by beta, then about y by -alpha."""
     c, s, cb, sb = ca.cos(alpha), ca.sin(alpha), ca.cos(beta), ca.sin(beta)
     return ca.vertcat(
-        ca.horzcat(c * cb, -c * sb, -s),
-        ca.horzcat(sb, cb, 0),
-        ca.horzcat(s * cb, -s * sb, c),
+        ca.horzcat(c * cb, -c * sb, -s), ca.horzcat(sb, cb, 0), ca.horzcat(s * cb, -s * sb, c)
     )

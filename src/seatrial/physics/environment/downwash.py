@@ -68,10 +68,7 @@ class Downwash(Component):
 
     exercised: ClassVar = {"direction": "vertical", "contact_time": 1e-3}
     views: ClassVar = {"landing-point": {"place": "pad", "phase": "phase"}}
-    terminals: ClassVar = {
-        "motion": terminal("attitude"),
-        "wrench": terminal("force", "moment"),
-    }
+    terminals: ClassVar = {"motion": terminal("attitude"), "wrench": terminal("force", "moment")}
 
     def start(self, t: float) -> None:
         """Check the times; raises InputError if the source's lift-off precedes its spool-up."""

@@ -8,7 +8,7 @@ from pathlib import Path
 from ...errors import InputError
 from ...model.component import Component, Parameter
 from ...whole_file import stamp
-from .grid_file import read_grid
+from .grid import read_grid
 from .obstacles import read_obstacles
 from .plane import Plane
 from .scene import Scene

@@ -36,7 +36,7 @@ class Shape:
         if beyond > 0.0 and (half > 0.0 or half * half < beyond):
             return None  # it passes by: most rays do
         if beyond <= 0.0 and self.nearest(origin).distance <= 0.0:
-            return Hit(0.0, _against(direction), self.kind)
+            return Hit(0.0, (-direction[0], -direction[1], -direction[2]), self.kind)
         first = min(self._entries(origin, direction), default=None)
         return None if first is None else Hit(*first, self.kind)
 
@@ -219,7 +219,3 @@ def _enter_sphere(
     if half < 0.0 <= under:
         distance = -half - math.sqrt(under)
         yield distance, unit(along(out, direction, distance))
-
-
-def _against(direction: Sequence[float]) -> Vector:
-    return (-direction[0], -direction[1], -direction[2])

@@ -10,13 +10,15 @@ from __future__ import annotations
 
 import ctypes
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any, ClassVar, TypeAlias, cast
 
+from ...fmi.instance import Variable
+from ...system.sums import SumInstance
 from ..algorithms import Algorithm, Extrapolated, GaussSeidel, PastInputs, ahead
 from ..feedthrough import Feedthrough, Group
 from ..network import Network
 from ..node import Chunk, Node, Writes
-from .marks import Marks
+from .library import function_address
 from .structures import (
     ARRIVE,
     BOOLEAN,
@@ -28,10 +30,10 @@ from .structures import (
     STEP,
     STORE,
     WRITE,
+    Marks,
     Operation,
     Times,
 )
-from .sums import CompiledSum
 
 if TYPE_CHECKING:
     from ...fmi.instance import Variable
@@ -40,7 +42,7 @@ if TYPE_CHECKING:
     from ...system.sums import SumInstance
     from .fmi3 import CompiledFmi3
 
-    Slave = Fmi2Slave | CompiledFmi3 | CompiledSum
+    Slave: TypeAlias = "Fmi2Slave | CompiledFmi3 | CompiledSum"
 
 _TYPES: dict[type, tuple[int, str, Any]] = {
     float: (REAL, "Real", ctypes.c_double),
@@ -237,12 +239,7 @@ class Program:
         self._ask(operation, node, slave, "DoStep", [])
 
     def _ask(
-        self,
-        operation: Operation,
-        node: Node,
-        slave: Slave,
-        function: str,
-        variables: list[Any],
+        self, operation: Operation, node: Node, slave: Slave, function: str, variables: list[Any]
     ) -> None:
         """Add an operation that calls a function of an FMU."""
         operation.function, operation.component = slave.address(function), slave.component
@@ -259,10 +256,7 @@ class Program:
     # ------------------------------------------------------------------ calls
 
     def _call(
-        self,
-        call: Callable[[int, int], None],
-        fetched: Sequence[int],
-        left: Sequence[Chunk] = (),
+        self, call: Callable[[int, int], None], fetched: Sequence[int], left: Sequence[Chunk] = ()
     ) -> None:
         """Add a call; those that follow each other are one operation."""
         if not (self.operations and self.operations[-1].kind == CALL):
@@ -339,3 +333,45 @@ class Program:
         else:
             slave = cast("Fmi2Slave", instance)
         return slave if slave.address(function) else None
+
+
+class Sum(ctypes.Structure):
+    """The structure of `master.c`, field by field."""
+
+    _fields_: ClassVar = [
+        ("inputs", ctypes.POINTER(ctypes.c_double)),
+        ("count", ctypes.c_int64),
+        ("terms", ctypes.c_int64),
+    ]
+
+
+class CompiledSum:
+    """What `program` asks of an FMU's instance, of a sum."""
+
+    _FUNCTIONS: ClassVar = {"SetReal": "sum_set", "GetReal": "sum_get", "DoStep": "sum_step"}
+
+    never_back = 0
+    ended_at = None
+
+    def __init__(self, instance: SumInstance) -> None:
+        self.name = instance.name
+        inputs = ctypes.cast(instance.inputs, ctypes.POINTER(ctypes.c_double))
+        self._sum = Sum(inputs=inputs, count=len(instance.inputs), terms=instance.terms)
+        self.component = ctypes.addressof(self._sum)
+
+    def references(self, variables: Sequence[Variable]) -> list[int]:
+        """Return the places of variables."""
+        return [variable.reference for variable in variables]
+
+    def address(self, function: str) -> int:
+        """Return where a function is, 0 if there is none of that name."""
+        return function_address(self._FUNCTIONS[function]) if function in self._FUNCTIONS else 0
+
+    def answered(self, function: str, status: int) -> None:
+        """Take what a call returned: nothing is ever refused."""
+
+    def stepped(self, t: float, h: float, status: int) -> None:
+        """Take what a step returned: nothing is ever refused."""
+
+    def forward(self) -> None:
+        """Log what it has said: nothing."""

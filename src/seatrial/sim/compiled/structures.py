@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from ctypes import POINTER, Structure, c_double, c_int32, c_int64, c_uint8, c_uint32, c_void_p
+from dataclasses import dataclass
 from typing import ClassVar
 
 WRITE, STEP, GET, STORE, ARRIVE, LOOP, CALL = range(7)
@@ -109,3 +111,17 @@ class Master(Structure):
         ("overrides", c_void_p),
         ("own", c_void_p),
     ]
+
+
+@dataclass(frozen=True)
+class Marks:
+    """Cells in memory, and what stands in the second of them while one component is in a call.
+
+    The first cell asks for a stop unless it is 0; the third has the time of a step, s, as a double.
+    """
+
+    CALLS: ClassVar = ("write", "step", "read")
+
+    address: int
+    codes: Mapping[str, int]
+    """By call, of `CALLS`."""

@@ -131,14 +131,10 @@ class ProfileFile(FileModel):
 
     title: str = Field(title="text", description="for listings")
     identity: Identity = Field(
-        default=Identity(),
-        title="table",
-        description="who the vehicle is on a MAVLink network",
+        default=Identity(), title="table", description="who the vehicle is on a MAVLink network"
     )
     home: Home = Field(
-        default=Home(),
-        title="table",
-        description="where and when the origin of north-east-down is",
+        default=Home(), title="table", description="where and when the origin of north-east-down is"
     )
     actuators: dict[Annotated[str, _like(NAME, "port")], Actuator] = Field(
         default_factory=dict, title="table per output channel", description="by name"

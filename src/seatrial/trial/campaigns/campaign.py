@@ -155,9 +155,7 @@ class Campaign:
 
 
 def load_campaign(
-    name: str,
-    changes: Mapping[str, Any] | None = None,
-    limit: Mapping[str, str] | None = None,
+    name: str, changes: Mapping[str, Any] | None = None, limit: Mapping[str, str] | None = None
 ) -> Campaign:
     """Read the campaign ``name`` (shipped, in ``harness/campaigns``, or a path).
 

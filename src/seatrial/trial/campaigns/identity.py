@@ -10,7 +10,7 @@ from ..records.program import program
 from ..records.run_schema import CAMPAIGN, checked_json
 from ..running.resuming import Note
 from .campaign import Campaign
-from .needed import files_of
+from .shipment import files_of
 
 
 def identity_of(campaign: Campaign) -> Identity:

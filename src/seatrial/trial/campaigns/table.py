@@ -43,10 +43,7 @@ class Tables:
     """
 
     def __init__(self, folder: Path, columns: Sequence[Column]) -> None:
-        self._writers = [
-            _Writer(folder / RESULTS, columns),
-            _Writer(folder / TIMING, _TIMES),
-        ]
+        self._writers = [_Writer(folder / RESULTS, columns), _Writer(folder / TIMING, _TIMES)]
 
     def __enter__(self) -> Tables:
         return self

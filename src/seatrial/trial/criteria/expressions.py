@@ -197,10 +197,7 @@ def _product_text(exponents: Exponents) -> str:
 
 
 def check_same(
-    what: str,
-    a: tuple[Expression, Exponents],
-    b: tuple[Expression, Exponents],
-    units: Units,
+    what: str, a: tuple[Expression, Exponents], b: tuple[Expression, Exponents], units: Units
 ) -> None:
     """Raise InputError, with both units, if two expressions do not measure the same."""
     if a[1] != b[1]:

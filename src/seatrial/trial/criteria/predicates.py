@@ -7,7 +7,9 @@ not, never zero. So one number is both the truth and the distance from the other
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping
+import re
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, ClassVar, Literal, NamedTuple, cast
@@ -15,11 +17,11 @@ from typing import Any, ClassVar, Literal, NamedTuple, cast
 import numpy as np
 
 from ...errors import InputError
+from ...links.text import decode
 from ...model.readable import distinct, from_si
 from . import expressions as ex
 from .expressions import BoolArray, Expression, FloatArray, Operation, Signal, Units, Values
 from .metrics import TIME, is_constant, is_of_record
-from .said import last_said, said_at
 
 TINY = 5e-324
 """The least margin there is: of a limit that is met exactly."""
@@ -231,7 +233,7 @@ class Truth:
 
 @dataclass(frozen=True)
 class Says:
-    """``port says "OK"``, or ``port is "OK"``: see `said.said_at`. Its margin is infinite."""
+    """``port says "OK"``, or ``port is "OK"``: see `said_at`. Its margin is infinite."""
 
     name: str
     verb: Literal["says", "is"]
@@ -310,3 +312,55 @@ def _limits(measured: Expression, bound: float, kind: str) -> list[Limit]:
         # The greatest stays below a bound if each one does, the least above it likewise.
         return [limit for a in arguments for limit in _limits(a, bound, kind)]
     return []
+
+
+def said_at(column: Sequence[str], text: str) -> BoolArray:
+    """Return at which rows a port says ``text``.
+
+    A port that carries bytes (`links.text`) says it where the last byte of it leaves: the bytes
+    are one stream, however they were cut into chunks. Any other port says it as long as its
+    value contains it. Text is compared as UTF-8.
+    """
+    if not is_stream(column):
+        return np.array([text in value for value in column], dtype=bool)
+    wanted = text.encode()
+    said = np.zeros(len(column), dtype=bool)
+    before = b""
+    for row, data in received(column):
+        stream = before + data
+        said[row] = wanted in stream
+        before = stream[-(len(wanted) - 1) :] if len(wanted) > 1 else b""
+    return said
+
+
+def is_stream(column: Sequence[str]) -> bool:
+    """Return whether a column is what a port of bytes holds: numbered chunks, at least one."""
+    values = set(column) - {""}
+    found = False
+    for value in values:
+        try:
+            found |= bool(decode(value)[1])
+        except InputError:
+            return False
+    return found
+
+
+def received(column: Sequence[str]) -> Iterator[tuple[int, bytes]]:
+    """Yield the rows at which bytes arrive, and those bytes."""
+    sequence = 0
+    for row, value in enumerate(column):
+        if row and value is column[row - 1]:
+            continue
+        number, chunks = decode(value)
+        if number > sequence:
+            sequence = number
+            yield row, b"".join(data for _, data in chunks)
+
+
+def last_said(column: Sequence[str], length: int = 80) -> str:
+    """Return the end of what a port has said, for a person; control characters as escapes."""
+    said = b"".join(data for _, data in received(column)) if is_stream(column) else b""
+    with suppress(IndexError):
+        said = said or column[-1].encode()
+    tail = said[-length:].decode(errors="replace")
+    return re.sub(r"[\x00-\x1f\x7f]", lambda found: repr(found.group())[1:-1], tail)

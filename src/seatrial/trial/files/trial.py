@@ -166,10 +166,7 @@ class Trial:
 
     def with_faults(self, faults: Sequence[FaultEntry], events: Sequence[EventEntry] = ()) -> Trial:
         """Return the trial with more faults, and events, after its own."""
-        more = {
-            "faults": [*self.file.faults, *faults],
-            "events": [*self.file.events, *events],
-        }
+        more = {"faults": [*self.file.faults, *faults], "events": [*self.file.events, *events]}
         return replace(self, file=self.file.model_copy(update=more))
 
     def failing(self, written: Sequence[Mapping[str, Any]], origin: str) -> Trial:

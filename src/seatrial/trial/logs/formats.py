@@ -39,10 +39,7 @@ class Format:
 FORMATS = Registry(
     "seatrial.log_formats",
     "log format",
-    {
-        "run": "seatrial.trial.logs.run_log:RUN",
-        "csv": "seatrial.trial.logs.csv_log:CSV",
-    },
+    {"run": "seatrial.trial.logs.run_log:RUN", "csv": "seatrial.trial.logs.csv_log:CSV"},
 )
 _OWN_TIME = "time"
 """What experiments call the time of a log that has times of its own."""

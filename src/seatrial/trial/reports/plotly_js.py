@@ -10,7 +10,7 @@ import base64
 from functools import cache
 from pathlib import Path
 
-from .packed import LESS
+from .templates import LESS
 
 FILE = Path(__file__).with_name("plotly.min.js.z")
 

@@ -21,10 +21,10 @@ from ..running.convergence import load_convergence
 from ..running.lost_links import lost_links
 from .accuracy_section import accuracy_section
 from .autopilot_section import add_estimate, autopilot_rows
-from .dark import DARK
 from .decks import deck, pads
 from .diagram import diagram
 from .event_marks import events_of, happenings
+from .figure import DARK
 from .metrics_section import metrics_figure, metrics_of
 from .parameter_tables import parameter_tables, value_text
 from .plotly_js import plotly_js

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import base64
 import contextlib
+import zlib
 from functools import cache
 from pathlib import Path
 
@@ -13,7 +15,6 @@ from ...fmi.cache import cache_folder
 from ...kits import kits
 from ...model.readable import number
 from ...whole_file import write_whole
-from .packed import packed
 
 FOLDER = "templates"
 """Beside this module, and beside the manifest of a kit whose pages have templates of their own."""
@@ -44,3 +45,16 @@ def environment() -> Environment:
     found.filters["number"] = number
     found.filters["packed"] = packed
     return found
+
+
+LESS = b","
+"""For ``<``, which would begin a tag; Python's alphabet has no comma."""
+
+
+def packed(content: str | bytes) -> str:
+    """Return content as text for an element of a page or a string of JavaScript, unescaped.
+
+    Letters are those of `base64.b85encode`, with a comma for ``<``; below is zlib's format.
+    """
+    data = content.encode() if isinstance(content, str) else content
+    return base64.b85encode(zlib.compress(data, 9)).replace(b"<", LESS).decode("ascii")

@@ -9,7 +9,7 @@ from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple, cast
 
 from ...fmi.instance import Instance, Reader, Writer
-from ...sim.compiled.marks import Marks
+from ...sim.compiled.structures import Marks
 
 _CALLS = {
     "set_start": "the setting of its start values",

@@ -10,7 +10,6 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
-from types import TracebackType
 
 from ...errors import SimulationError
 from ...model.component import seconds
@@ -64,14 +63,9 @@ class Pool:
     def __enter__(self) -> Pool:
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         for supervisor in self._all:
-            supervisor.__exit__(kind, error, trace)
+            supervisor.__exit__()
 
     def check(self) -> None:
         """Check all trials. Raises what `Supervisor.check` raises, of the first that is wrong."""

@@ -2,24 +2,31 @@
 
 from __future__ import annotations
 
+import math
 import time
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
-from ...model.component import seconds
+from ...errors import SimulationError
+from ...model.component import NS, seconds
+from ...model.units import unit
 from ...sim.actions import action
+from ...sim.clock import Pacer
 from ...sim.master import Master
 from ...sim.recorder import Recorder, Watched
+from ..criteria.formulas import Formula
+from ..criteria.predicates import Comparison, Kind, Record
+from ..criteria.robustness import Evaluation
 from ..criteria.verdict import Verdict
 from ..files.trial import Trial
+from ..files.trial_file import RealTimeEntry
 from ..records.ending import ended_by
 from .hooks import Hooks
 from .lost_links import LostLinks
-from .pacing import Pace
 from .preparation import Prepared
-from .termination import TerminationConditions
 
 _SHOWN_EVERY_S = 0.1
 """Wall time between two calls of the progress hook."""
@@ -163,3 +170,125 @@ class Stepping:
         if now - self._shown > _SHOWN_EVERY_S:
             self._shown = now
             self._hooks.progress(self.simulated_s, self._whole_s)
+
+
+_LEAST_FACTOR = 1e-9
+
+
+class Pace:
+    """Steps of a master at the pace that a trial asks for.
+
+    Where the factor is a signal, its value at a communication point is that of the step from
+    there on. Wall time by which the signal ``paused`` grows in a step is excluded.
+    """
+
+    def __init__(self, entry: RealTimeEntry, master: Master) -> None:
+        places = {".".join(name): place for place, name in enumerate(master.names)}
+        self._master = master
+        self._factor = entry.factor
+        self._factor_place = places[entry.factor] if isinstance(entry.factor, str) else None
+        self._paused_place = places[entry.paused] if entry.paused is not None else None
+        self.pacer = Pacer(1.0 if isinstance(entry.factor, str) else entry.factor, entry.overrun)
+
+    def start(self) -> None:
+        """Start the clock. Raises SimulationError for a signal that is no factor."""
+        self._paused = self._paused_s()
+        self.pacer.factor = self._wanted()
+        self.pacer.start(self._master.time_ns)
+
+    def step(self, stop_requested: Callable[[], int]) -> None:
+        """Take a step and wait until its end is due, or a stop is requested.
+
+        Raises SimulationError if the step is late and must not be, or for a signal that is no
+        factor.
+        """
+        master, pacer = self._master, self.pacer
+        pacer.change(self._wanted(), master.time_ns)
+        before = {name: times.total_ns for name, times in master.step_times.items()}
+        master.step()
+        paused = self._paused_s()
+        pacer.pause(round((paused - self._paused) * NS))
+        self._paused = paused
+        lateness = pacer.keep(master.time_ns, stop_requested)
+        if lateness and pacer.policy == "abort":
+            spent = {name: t.total_ns - before[name] for name, t in master.step_times.items()}
+            slowest = max(spent, key=spent.__getitem__)
+            raise SimulationError(
+                f"at t = {master.time!r} s the step ended {lateness / 1e6:.3g} ms after its "
+                f"deadline in real time (factor {pacer.factor:g}, overrun = 'abort'); {slowest} "
+                f"took longest, {spent[slowest] / 1e6:.3g} ms"
+            )
+
+    def _wanted(self) -> float:
+        """Return the factor of the step from here on."""
+        if self._factor_place is None:
+            return self.pacer.factor
+        factor = float(self._master.signals[self._factor_place])
+        if not _LEAST_FACTOR <= factor < math.inf:
+            raise SimulationError(
+                f"real_time.factor: {self._factor} is {factor!r} at t = {self._master.time!r} s, "
+                f"at least {_LEAST_FACTOR:g} is needed"
+            )
+        return factor
+
+    def _paused_s(self) -> float:
+        if self._paused_place is None:
+            return 0.0
+        return float(self._master.signals[self._paused_place])
+
+
+class TerminationConditions:
+    """Criteria with ``ends``, evaluated at every communication point.
+
+    One that must always hold ends the run where it is broken, one that must hold eventually
+    where it holds for the first time.
+    """
+
+    def __init__(self, trial: Trial, master: Master, units: Mapping[str, str]) -> None:
+        self._master = master
+        self._conditions: list[Formula] = []
+        self._goals: list[Formula] = []
+        kinds: dict[str, set[Kind]] = {}
+        for entry, (_, criterion) in zip(trial.file.criteria, trial.criteria, strict=True):
+            if entry.ends:
+                if criterion.condition is not None:
+                    self._conditions.append(criterion.condition)
+                elif criterion.goal is not None:
+                    self._goals.append(criterion.goal)
+                for name, wanted in criterion.kinds.items():
+                    kinds.setdefault(name, set()).update(wanted)
+        places = {".".join(name): place for place, name in enumerate(master.names)}
+        self._texts = {name: places[name] for name, wanted in kinds.items() if "text" in wanted}
+        self._scales = {
+            name: (places[name], unit(units[name]))
+            for name, wanted in kinds.items()
+            if wanted != {"text"}
+        }
+
+    @property
+    def has_any(self) -> bool:
+        """Whether there are such criteria."""
+        return bool(self._conditions or self._goals)
+
+    def status(self) -> str | None:
+        """Return the status of a run that is over now, ended or complete; else None."""
+        if not self.has_any:
+            return None
+        signals = self._master.signals
+        numbers = {
+            name: float(signals[place]) * measure.factor + measure.offset
+            for name, (place, measure) in self._scales.items()
+        }
+        if not all(self._holds(condition, numbers) for condition in self._conditions):
+            return "ended"
+        if any(self._holds(goal, numbers) for goal in self._goals):
+            return "complete"
+        return None
+
+    def _holds(self, formula: Formula, numbers: Mapping[str, float]) -> bool:
+        if isinstance(formula, Comparison):  # nearly all are: arrays of one value cost ten times
+            return formula.holds_of(numbers)
+        signals = self._master.signals
+        texts = {name: [str(signals[place])] for name, place in self._texts.items()}
+        now = Record(np.zeros(1), {n: np.array([value]) for n, value in numbers.items()}, texts)
+        return bool(Evaluation(now).margins(formula)[0][0] > 0)

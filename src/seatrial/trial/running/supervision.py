@@ -10,7 +10,6 @@ from contextlib import suppress
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
-from types import TracebackType
 from typing import Any, Literal, NoReturn
 
 from ...errors import InputError, SimulationError
@@ -77,12 +76,7 @@ class Supervisor:
     def __enter__(self) -> Supervisor:
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         if self._forked is not None:
             self._forked.end(2 if self._busy else 0)
 
@@ -110,11 +104,7 @@ class Supervisor:
         return measured
 
     def begin(
-        self,
-        what: Order,
-        number: int,
-        folder: Path | None = None,
-        changes: Changes | None = None,
+        self, what: Order, number: int, folder: Path | None = None, changes: Changes | None = None
     ) -> None:
         """Begin to check, measure or run a trial, or to write the report of its folder.
 

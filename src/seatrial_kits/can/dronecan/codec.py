@@ -38,8 +38,3 @@ def transfer_of(identifier: int, datas: Sequence[bytes]) -> Transfer | None:
     except (TransferError, ValueError, IndexError):
         return None
     return found
-
-
-def is_a(payload: Any, kind: Any) -> bool:
-    """Return whether a payload is of a type, or a request or response of a service."""
-    return bool(payload._type is kind)

@@ -11,15 +11,7 @@ from typing import Any, ClassVar, NamedTuple
 from dronecan.transport import Transfer
 
 from seatrial.errors import InputError
-from seatrial.model.component import (
-    NS,
-    Component,
-    Input,
-    Noise,
-    Output,
-    Parameter,
-    terminal,
-)
+from seatrial.model.component import NS, Component, Input, Noise, Output, Parameter, terminal
 
 from ..node import CanNode
 from .allocation import Allocatee, Allocation

@@ -18,15 +18,7 @@ from seatrial.physics.craft.kinematics import to_body
 
 from .channels import AXES, MOST_CHANNELS, channels_of
 from .commands import ArrayCommand, RawCommand, RPMCommand, commanded
-from .instruments import (
-    BATTERY,
-    ArmingStatus,
-    battery,
-    is_armed,
-    magnetic,
-    pressure,
-    temperature,
-)
+from .instruments import BATTERY, ArmingStatus, battery, is_armed, magnetic, pressure, temperature
 from .navigation import Motion, fix, solution
 from .node import OFFLINE_NS, DroneCanNode, Task
 from .parameters import Setting

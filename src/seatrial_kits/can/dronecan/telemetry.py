@@ -68,9 +68,5 @@ def reported(message: Any) -> dict[str, float]:
             "speed": message.rpm * RPM,
         }
     else:
-        found = {
-            "position": message.position,
-            "force": message.force,
-            "speed": message.speed,
-        }
+        found = {"position": message.position, "force": message.force, "speed": message.speed}
     return {name: value for name, value in found.items() if math.isfinite(value)}

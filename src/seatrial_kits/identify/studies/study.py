@@ -67,10 +67,7 @@ class Study:
         E = ratios["thrust"]
         total = thrust / E
         of_E = {"thrust": -total / E}
-        found = {
-            "total mass": (total, of_E),
-            "added mass": (total - self.experiment.mass, of_E),
-        }
+        found = {"total mass": (total, of_E), "added mass": (total - self.experiment.mass, of_E)}
         for name, sign in (("linear", -1.0), ("quadratic", -1.0), ("offset", 1.0)):
             value = sign * total * ratios[name] + 0.0
             found[name] = (value, {name: sign * total, "thrust": -value / E})

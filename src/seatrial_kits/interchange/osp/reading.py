@@ -15,7 +15,7 @@ from seatrial.model.component import NS
 from seatrial.model.units import conversion
 from seatrial.system.files import Source
 from seatrial.system.flattening import rig_of
-from seatrial.system.packaged import OSP_FILE, PackagedSystem
+from seatrial.system.packages import OSP_FILE, PackagedSystem
 from seatrial.system.rig import duration_ns
 
 from ..ssp.layout import unused

@@ -14,7 +14,7 @@ from seatrial.fmi.components.source import find_source
 from seatrial.fmi.files.osp import osp_file, osp_xml
 from seatrial.fmi.loading.load import load_fmu
 from seatrial.model.component import seconds
-from seatrial.system.packaged import OSP_FILE
+from seatrial.system.packages import OSP_FILE
 from seatrial.system.part import Part
 from seatrial.system.system import Connection, System
 

@@ -93,11 +93,7 @@ def read_parameter_set(
 
 
 def _parameter(
-    element: Any,
-    units: Mapping[str, Unit],
-    enumerations: Enumerations,
-    notes: Notes,
-    prefix: str,
+    element: Any, units: Mapping[str, Unit], enumerations: Enumerations, notes: Notes, prefix: str
 ) -> Parameter:
     types = {f"ssv:{kind}" for kind in KINDS}
     dimension = f"{{{NAMESPACES['ssc']}}}Dimension"
@@ -111,17 +107,13 @@ def _parameter(
     one = found[0]
     known(one, {"value", "unit", "name", "mime-type"}, {"ssv:Value"}, notes)
     values = _values(one, enumerations)
-    sizes = [_size(each) for each in element.iterfind(dimension)]
+    sizes = [int(_whole(needed(each, "size"), where(each))) for each in element.iterfind(dimension)]
     if sizes and math.prod(sizes) != len(values):
         shape = " by ".join(map(str, sizes))
         raise InputError(
             f"{where(element)}: parameter {name!r}: an array of {shape} has {len(values)} values"
         )
     return Parameter(prefix + name, values, measured(one, units, notes), where(element))
-
-
-def _size(dimension: Any) -> int:
-    return int(_whole(needed(dimension, "size"), where(dimension)))
 
 
 def _values(element: Any, enumerations: Enumerations) -> tuple[Value | Item, ...]:

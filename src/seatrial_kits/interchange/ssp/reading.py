@@ -13,7 +13,7 @@ from seatrial.model.component import NS, seconds
 from seatrial.model.ports import Scalar
 from seatrial.system.files import Source
 from seatrial.system.flattening import rig_of
-from seatrial.system.packaged import PackagedSystem
+from seatrial.system.packages import PackagedSystem
 from seatrial.system.paths import joined
 from seatrial.system.values import storable
 

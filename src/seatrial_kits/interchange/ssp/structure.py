@@ -43,8 +43,7 @@ from .model import (
     System,
 )
 from .notes import Notes
-from .package import Package, package_inside
-from .sources import Sources
+from .package import Package, Sources, package_inside
 from .transformations import KINDS, read_transformation
 
 _DRAWN = {

@@ -116,9 +116,7 @@ FACTS = (
         {},
     ),
     Fact(
-        rules.no_step,
-        {"libcosim": "needs OSP's baseStepSize, or a step size from its caller"},
-        {},
+        rules.no_step, {"libcosim": "needs OSP's baseStepSize, or a step size from its caller"}, {}
     ),
     Fact(rules.no_oms_step, {}, {"omsimulator": "version 2 needs its own annotation with a step"}),
     Fact(rules.odd_names, {"omsimulator": _IDENTIFIER}, {}),
@@ -149,9 +147,7 @@ FACTS = (
         },
     ),
     Fact(
-        rules.system_bindings,
-        {},
-        dict.fromkeys(_ALL_RUN, "ignores parameter bindings of systems"),
+        rules.system_bindings, {}, dict.fromkeys(_ALL_RUN, "ignores parameter bindings of systems")
     ),
     Fact(
         rules.second_bindings,
@@ -163,11 +159,7 @@ FACTS = (
         {},
         dict.fromkeys(("libcosim", "ecos"), "ignores the prefix of a parameter binding"),
     ),
-    Fact(
-        rules.mappings,
-        {},
-        dict.fromkeys(_ALL_RUN, "ignores parameter mappings"),
-    ),
+    Fact(rules.mappings, {}, dict.fromkeys(_ALL_RUN, "ignores parameter mappings")),
     Fact(
         rules.measured_values,
         {},

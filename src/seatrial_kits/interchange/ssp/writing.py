@@ -10,7 +10,7 @@ from seatrial.fmi.building.export import fmu_bytes
 from seatrial.fmi.building.packing import zipped
 from seatrial.fmi.cache import write_named
 from seatrial.fmi.components.source import find_source
-from seatrial.system.packaged import SSP_FILE
+from seatrial.system.packages import SSP_FILE
 from seatrial.system.part import Part
 from seatrial.system.system import Connection, System
 

@@ -99,11 +99,7 @@ class GroundStation(Waypoints, Sampled):
     )
 
     without = Input(
-        "1",
-        "what ArduPilot's simulation lacks",
-        axes=tuple(FAILURES),
-        type=bool,
-        optional=True,
+        "1", "what ArduPilot's simulation lacks", axes=tuple(FAILURES), type=bool, optional=True
     )
 
     position_valid = Input(

@@ -95,11 +95,7 @@ def _is_ready(c: Conversation, dialect: Dialect) -> bool:
 
 
 def _items(
-    c: Conversation,
-    places: Sequence[Place],
-    radius: float,
-    dialect: Dialect,
-    origin: Origin,
+    c: Conversation, places: Sequence[Place], radius: float, dialect: Dialect, origin: Origin
 ) -> list[Message]:
     """Return the mission, with home as item 0 where the firmware has it so."""
     frame, kind = mavlink.MAV_FRAME_GLOBAL_RELATIVE_ALT_INT, mavlink.MAV_CMD_NAV_WAYPOINT

@@ -19,11 +19,7 @@ _AT_A_PLACE = (
     mavlink.MAV_CMD_NAV_LOITER_TURNS,
     mavlink.MAV_CMD_NAV_LOITER_TIME,
 )
-NAVIGATION = (
-    *_AT_A_PLACE,
-    mavlink.MAV_CMD_NAV_RETURN_TO_LAUNCH,
-    mavlink.MAV_CMD_NAV_DELAY,
-)
+NAVIGATION = (*_AT_A_PLACE, mavlink.MAV_CMD_NAV_RETURN_TO_LAUNCH, mavlink.MAV_CMD_NAV_DELAY)
 """Commands that lead somewhere, or stay."""
 _ACTIONS = (
     mavlink.MAV_CMD_CONDITION_DELAY,

@@ -34,14 +34,7 @@ _SWITCH = {0: False, 1: True}
 _MANUAL_AXES = "the channels of manual control are always the same"
 _NO_SWITCH = "no channel chooses modes"
 
-_FUNCTIONS = {
-    "rudder": 26,
-    "throttle": 70,
-    "port": 73,
-    "starboard": 74,
-    "sail": 89,
-    "flap": 128,
-}
+_FUNCTIONS = {"rudder": 26, "throttle": 70, "port": 73, "starboard": 74, "sail": 89, "flap": 128}
 """SERVOn_FUNCTION of a boat's actuator, by its name."""
 _NO_FUNCTION, _FIRST_MOTOR = 0, 33
 _LISTED_CHANNELS = 8

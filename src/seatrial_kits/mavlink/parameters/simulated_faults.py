@@ -61,11 +61,7 @@ def simulated_faults(
     }
     north, east, up = (simulated.get(name, 0.0) for name in _GLITCH)
     if (north or east or up) and not submerged:
-        moved = (
-            north * _METRES_PER_DEGREE,
-            east * _METRES_PER_DEGREE * math.cos(latitude),
-            -up,
-        )
+        moved = (north * _METRES_PER_DEGREE, east * _METRES_PER_DEGREE * math.cos(latitude), -up)
         faults.setdefault("gps", _bias("position_n", *moved))
     if raised := simulated.get("SIM_BARO_GLITCH"):
         faults.setdefault("baro", _bias("depth", -raised))

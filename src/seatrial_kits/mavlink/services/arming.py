@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 
 from pymavlink.dialects.v20 import all as mavlink
 
@@ -14,8 +14,8 @@ from ..service import (
     UNSUPPORTED,
     WARNING,
     Command,
-    Handler,
     Service,
+    on_command,
 )
 from ..settings import COMPASS_CHECK, GPS_CHECK, Settings
 from ..transport import Sender, Transport
@@ -44,14 +44,6 @@ class ArmingService(Service):
         self.lasting: dict[str, None] = {}
         """Reasons of failsafes that last."""
 
-    @property
-    def commands(self) -> Mapping[int, Handler]:
-        """Commands that it carries out."""
-        return {
-            mavlink.MAV_CMD_COMPONENT_ARM_DISARM: self._arm_or_disarm,
-            mavlink.MAV_CMD_RUN_PREARM_CHECKS: self._run_checks,
-        }
-
     def disarm(self) -> None:
         """Disarm."""
         if self.vehicle.armed:
@@ -68,6 +60,7 @@ class ArmingService(Service):
         found = dict.fromkeys(reason for check in self.checks if (reason := check()) is not None)
         return [*(found | self.lasting)]
 
+    @on_command(mavlink.MAV_CMD_COMPONENT_ARM_DISARM)
     def _arm_or_disarm(self, command: Command, sender: Sender, now: float) -> int:
         wanted, how = command.parameters[:2]
         if wanted == 0.0:
@@ -85,6 +78,7 @@ class ArmingService(Service):
             self.vehicle.report(WARNING if forced else INFO, f"Armed{forced}")
         return ACCEPTED
 
+    @on_command(mavlink.MAV_CMD_RUN_PREARM_CHECKS)
     def _run_checks(self, command: Command, sender: Sender, now: float) -> int:
         if self.vehicle.armed:
             return int(mavlink.MAV_RESULT_TEMPORARILY_REJECTED)

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from typing import ClassVar
 
 from pymavlink.dialects.v20 import all as mavlink
 
 from ..codec import Message
 from ..scaling import UNKNOWN_U16, clamped, int16, int32, uint16
-from ..service import Builder, Service
+from ..service import Service, builds
 from ..settings import Settings
 from ..transport import Transport
 from ..vehicle import Vehicle
@@ -42,11 +41,6 @@ class BatteryService(Service):
         self._low_since = math.inf
         self._acted = False
 
-    @property
-    def messages(self) -> Mapping[int, Builder]:
-        """Messages that it can build."""
-        return {mavlink.MAVLINK_MSG_ID_BATTERY_STATUS: self._status}
-
     def tick(self, now: float) -> None:
         """Act when the battery has been low for long enough, once."""
         if not self._is_low():
@@ -64,6 +58,7 @@ class BatteryService(Service):
         drained = e.charge is not None and e.charge < settings.battery_low_charge
         return e.voltage < settings.battery_low_voltage or drained
 
+    @builds(mavlink.MAVLINK_MSG_ID_BATTERY_STATUS)
     def _status(self, now: float) -> list[Message]:
         e = self.vehicle.estimates
         if e.voltage is None:

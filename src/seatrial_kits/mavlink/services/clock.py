@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-
 from pymavlink.dialects.v20 import all as mavlink
 
 from ..codec import Message
 from ..scaling import microseconds
-from ..service import Receiver, Service
+from ..service import Service, on_message
 from ..transport import Sender
 
 
@@ -19,19 +17,13 @@ class ClockService(Service):
     waits for the vehicle's next instant.
     """
 
-    @property
-    def receivers(self) -> Mapping[int, Receiver]:
-        """Messages that it takes in."""
-        return {
-            mavlink.MAVLINK_MSG_ID_TIMESYNC: self._synchronise,
-            mavlink.MAVLINK_MSG_ID_PING: self._ping,
-        }
-
+    @on_message(mavlink.MAVLINK_MSG_ID_TIMESYNC)
     def _synchronise(self, message: Message, sender: Sender, now: float) -> None:
         if message.tc1 == 0:
             answer = mavlink.MAVLink_timesync_message(round(now * 1e9), message.ts1)
             self.transport.send(sender.link, answer)
 
+    @on_message(mavlink.MAVLINK_MSG_ID_PING)
     def _ping(self, message: Message, sender: Sender, now: float) -> None:
         if message.target_system == 0 and message.target_component == 0:
             answer = mavlink.MAVLink_ping_message(

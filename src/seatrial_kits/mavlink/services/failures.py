@@ -9,7 +9,17 @@ from pymavlink.dialects.v20 import all as mavlink
 from seatrial.errors import InputError, unknown
 
 from ..parameters.simulated_faults import simulated_faults
-from ..service import ACCEPTED, DENIED, INFO, UNSUPPORTED, WARNING, Command, Handler, Service, whole
+from ..service import (
+    ACCEPTED,
+    DENIED,
+    INFO,
+    UNSUPPORTED,
+    WARNING,
+    Command,
+    Service,
+    on_command,
+    whole,
+)
 from ..settings import Settings
 from ..transport import Sender, Transport
 from ..vehicle import Vehicle
@@ -91,11 +101,7 @@ class FailureService(Service):
             for unit, failure in self.failing.items()
         }
 
-    @property
-    def commands(self) -> Mapping[int, Handler]:
-        """Commands that it carries out."""
-        return {mavlink.MAV_CMD_INJECT_FAILURE: self._inject}
-
+    @on_command(mavlink.MAV_CMD_INJECT_FAILURE)
     def _inject(self, command: Command, sender: Sender, now: float) -> int:
         unit, kind, instance = (whole(value) for value in command.parameters[:3])
         if not self._settings.failures_allowed:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from typing import ClassVar
 
 from pymavlink.dialects.v20 import all as mavlink
@@ -13,7 +12,7 @@ from ..missions.fence_zones import Zone, is_allowed, zones_of
 from ..missions.plan import Plan
 from ..missions.plan_items import Item
 from ..scaling import milliseconds
-from ..service import ACCEPTED, DENIED, NOTICE, Builder, Command, Handler, Service
+from ..service import ACCEPTED, DENIED, NOTICE, Command, Service, builds, on_command
 from ..settings import Settings
 from ..transport import Sender, Transport
 from ..vehicle import Vehicle
@@ -59,16 +58,6 @@ class FenceService(Service):
         self._breach: str | None = None
         self._count, self._at = 0, 0.0
         self._inside_since = math.inf
-
-    @property
-    def commands(self) -> Mapping[int, Handler]:
-        """Commands that it carries out."""
-        return {mavlink.MAV_CMD_DO_FENCE_ENABLE: self._enable}
-
-    @property
-    def messages(self) -> Mapping[int, Builder]:
-        """Messages that it can build."""
-        return {mavlink.MAVLINK_MSG_ID_FENCE_STATUS: self._status}
 
     def check(self) -> str | None:
         """Return the reason against arming, None if there is none."""
@@ -116,6 +105,7 @@ class FenceService(Service):
         """Return whether the breach could be seen if it lasted."""
         return self._breach != BREACH or self.vehicle.estimates.position_valid
 
+    @on_command(mavlink.MAV_CMD_DO_FENCE_ENABLE)
     def _enable(self, command: Command, sender: Sender, now: float) -> int:
         wanted = command.parameters[0]
         if wanted not in (0.0, 1.0):
@@ -124,6 +114,7 @@ class FenceService(Service):
         self.vehicle.report(NOTICE, f"Fence {'on' if self._enabled else 'off'}")
         return ACCEPTED
 
+    @builds(mavlink.MAVLINK_MSG_ID_FENCE_STATUS)
     def _status(self, now: float) -> list[Message]:
         breach = self._breach
         if not (self._zones or self._settings.fence_depth or self._count):

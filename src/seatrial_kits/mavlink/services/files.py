@@ -9,7 +9,7 @@ from typing import NamedTuple
 from pymavlink.dialects.v20 import all as mavlink
 
 from ..codec import Message
-from ..service import Receiver, Service
+from ..service import Service, on_message
 from ..transport import Sender, Transport
 from ..vehicle import Vehicle
 
@@ -59,13 +59,7 @@ class FileService(Service):
         self._sessions: dict[_Session, bytes] = {}
         """By station and its number: MAVProxy numbers them itself, and wants its number back."""
 
-    @property
-    def receivers(self) -> Mapping[int, Receiver]:
-        """Messages that it takes in."""
-        return {
-            mavlink.MAVLINK_MSG_ID_FILE_TRANSFER_PROTOCOL: self._take,
-        }
-
+    @on_message(mavlink.MAVLINK_MSG_ID_FILE_TRANSFER_PROTOCOL)
     def _take(self, message: Message, sender: Sender, now: float) -> None:
         payload = bytes(message.payload)
         sequence, session, opcode, size, _, _, offset = _HEADER.unpack_from(payload)

@@ -20,11 +20,11 @@ from ..service import (
     DENIED,
     FAILED,
     WARNING,
-    Builder,
     Command,
-    Handler,
     Receiver,
     Service,
+    builds,
+    on_command,
     whole,
 )
 from ..settings import FASTEST, Settings
@@ -73,16 +73,6 @@ class GuidedService(Service):
         self._before = 0.0
 
     @property
-    def commands(self) -> Mapping[int, Handler]:
-        """Commands that it carries out."""
-        return {mavlink.MAV_CMD_DO_REPOSITION: self._reposition}
-
-    @property
-    def messages(self) -> Mapping[int, Builder]:
-        """Messages that it can build."""
-        return {mavlink.MAVLINK_MSG_ID_POSITION_TARGET_LOCAL_NED: self._position_target}
-
-    @property
     def receivers(self) -> Mapping[int, Receiver]:
         """Messages that it takes in."""
         return {
@@ -94,11 +84,7 @@ class GuidedService(Service):
         }
 
     def _take(
-        self,
-        read: Callable[[Message], Target | None],
-        message: Message,
-        sender: Sender,
-        now: float,
+        self, read: Callable[[Message], Target | None], message: Message, sender: Sender, now: float
     ) -> None:
         if self.vehicle.mode != self.vehicle.dialect.mode("guided"):
             return
@@ -205,6 +191,7 @@ class GuidedService(Service):
 
     # ------------------------------------------------------------------ commands
 
+    @on_command(mavlink.MAV_CMD_DO_REPOSITION)
     def _reposition(self, command: Command, sender: Sender, now: float) -> int:
         speed, flags = command.parameters[0], whole(command.parameters[1]) or 0
         latitude, longitude, altitude = command.parameters[4:]
@@ -226,6 +213,7 @@ class GuidedService(Service):
         self.vehicle.target = replace(target, speed=speed) if 0.0 < speed <= FASTEST else target
         return ACCEPTED
 
+    @builds(mavlink.MAVLINK_MSG_ID_POSITION_TARGET_LOCAL_NED)
     def _position_target(self, now: float) -> list[Message]:
         target = self.vehicle.target
         if target is None or self.vehicle.mode.name != "guided":

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from typing import ClassVar
 
 from pymavlink.dialects.v20 import all as mavlink
@@ -18,11 +17,11 @@ from ..service import (
     DENIED,
     FAILED,
     WARNING,
-    Builder,
     Command,
-    Handler,
-    Receiver,
     Service,
+    builds,
+    on_command,
+    on_message,
 )
 from ..transport import Sender
 
@@ -37,37 +36,16 @@ class HomeService(Service):
 
     streams: ClassVar = {mavlink.MAVLINK_MSG_ID_HOME_POSITION: 2.0}
 
-    @property
-    def commands(self) -> Mapping[int, Handler]:
-        """Commands that it carries out."""
-        return {
-            mavlink.MAV_CMD_DO_SET_HOME: self._set_home,
-            mavlink.MAV_CMD_GET_HOME_POSITION: self._send_home,
-        }
-
-    @property
-    def messages(self) -> Mapping[int, Builder]:
-        """Messages that it can build."""
-        return {
-            mavlink.MAVLINK_MSG_ID_HOME_POSITION: self._home,
-            mavlink.MAVLINK_MSG_ID_GPS_GLOBAL_ORIGIN: self._origin,
-        }
-
-    @property
-    def receivers(self) -> Mapping[int, Receiver]:
-        """Messages that it takes in."""
-        return {
-            mavlink.MAVLINK_MSG_ID_SET_HOME_POSITION: self._take_home,
-            mavlink.MAVLINK_MSG_ID_SET_GPS_GLOBAL_ORIGIN: self._refuse_origin,
-        }
-
+    @on_message(mavlink.MAVLINK_MSG_ID_SET_HOME_POSITION)
     def _take_home(self, message: Message, sender: Sender, now: float) -> None:
         self._move(message.latitude * 1e-7, message.longitude * 1e-7, message.altitude * 1e-3, now)
 
+    @on_message(mavlink.MAVLINK_MSG_ID_SET_GPS_GLOBAL_ORIGIN)
     def _refuse_origin(self, message: Message, sender: Sender, now: float) -> None:
         self.vehicle.report(WARNING, "The origin stays: it belongs to the trial")
         self.transport.send(sender.link, self._origin(now)[0])
 
+    @on_command(mavlink.MAV_CMD_DO_SET_HOME)
     def _set_home(self, command: Command, sender: Sender, now: float) -> int:
         how = command.parameters[0]
         if how not in (0.0, 1.0):
@@ -95,10 +73,12 @@ class HomeService(Service):
         self.vehicle.home_n = position
         self.transport.broadcast(self._home(now)[0])
 
+    @on_command(mavlink.MAV_CMD_GET_HOME_POSITION)
     def _send_home(self, command: Command, sender: Sender, now: float) -> int:
         self.transport.send(sender.link, self._home(now)[0])
         return ACCEPTED
 
+    @builds(mavlink.MAVLINK_MSG_ID_HOME_POSITION)
     def _home(self, now: float) -> list[Message]:
         latitude, longitude, altitude = self.vehicle.origin.geodetic(self.vehicle.home_n)
         return [
@@ -115,6 +95,7 @@ class HomeService(Service):
             )
         ]
 
+    @builds(mavlink.MAVLINK_MSG_ID_GPS_GLOBAL_ORIGIN)
     def _origin(self, now: float) -> list[Message]:
         latitude, longitude, altitude = self.vehicle.origin.geodetic((0.0, 0.0, 0.0))
         return [

@@ -18,7 +18,7 @@ from ..parameters.joystick import (
     TOGGLE_ARMED,
     TOGGLE_GAIN,
 )
-from ..service import INFO, Command, Handler, Receiver, Service
+from ..service import INFO, Command, Handler, Service, on_message
 from ..settings import Settings
 from ..transport import Sender, Transport
 from ..vehicle import Vehicle
@@ -44,15 +44,11 @@ class JoystickService(Service):
         self._gain: float | None = None
 
     @property
-    def receivers(self) -> Mapping[int, Receiver]:
-        """Messages that it takes in."""
-        return {mavlink.MAVLINK_MSG_ID_MANUAL_CONTROL: self._take}
-
-    @property
     def gain(self) -> float:
         """Share of the axes that acts."""
         return self._settings.gain_start if self._gain is None else self._gain
 
+    @on_message(mavlink.MAVLINK_MSG_ID_MANUAL_CONTROL)
     def _take(self, message: Message, sender: Sender, now: float) -> None:
         if not self._settings.buttons or sender.system != self._settings.pilot_system:
             return

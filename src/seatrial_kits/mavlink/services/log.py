@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
 from pymavlink.dialects.v20 import all as mavlink
 
 from ..codec import Message
-from ..service import WARNING, Receiver, Service
+from ..service import WARNING, Service, on_message
 from ..transport import Sender, Transport
 from ..vehicle import Vehicle
 
@@ -47,16 +47,6 @@ class LogService(Service):
         self._number = int(vehicle.dialect.home_is_item_0)  # ArduPilots count from 1
         self._downloads: dict[int, _Download] = {}
 
-    @property
-    def receivers(self) -> Mapping[int, Receiver]:
-        """Messages that it takes in."""
-        return {
-            mavlink.MAVLINK_MSG_ID_LOG_REQUEST_LIST: self._list,
-            mavlink.MAVLINK_MSG_ID_LOG_REQUEST_DATA: self._begin,
-            mavlink.MAVLINK_MSG_ID_LOG_REQUEST_END: self._end,
-            mavlink.MAVLINK_MSG_ID_LOG_ERASE: self._refuse,
-        }
-
     def tick(self, now: float) -> None:
         """Send what is due, and forget the links that are gone."""
         links, now = set(self.transport.links()), self.vehicle.link_time(now)
@@ -66,6 +56,7 @@ class LogService(Service):
                 self._send(link, download)
                 download.due += 1.0 / RATE
 
+    @on_message(mavlink.MAVLINK_MSG_ID_LOG_REQUEST_LIST)
     def _list(self, message: Message, sender: Sender, now: float) -> None:
         path = self._file()
         self._size = 0 if path is None else path.stat().st_size
@@ -74,6 +65,7 @@ class LogService(Service):
         entry = (0, 0, 0, 0, 0) if path is None else there
         self.transport.send(sender.link, mavlink.MAVLink_log_entry_message(*entry))
 
+    @on_message(mavlink.MAVLINK_MSG_ID_LOG_REQUEST_DATA)
     def _begin(self, message: Message, sender: Sender, now: float) -> None:
         path = self._file()
         if path is None or message.id != self._number:
@@ -94,16 +86,17 @@ class LogService(Service):
                 data = file.read(wanted)
         block = list(data.ljust(BLOCK, b"\0"))
         self.transport.send(
-            link,
-            mavlink.MAVLink_log_data_message(self._number, download.offset, len(data), block),
+            link, mavlink.MAVLink_log_data_message(self._number, download.offset, len(data), block)
         )
         download.offset += len(data)
         all_sent = download.offset >= download.end and download.end < self._size
         if len(data) < BLOCK or all_sent:
             del self._downloads[link]
 
+    @on_message(mavlink.MAVLINK_MSG_ID_LOG_REQUEST_END)
     def _end(self, message: Message, sender: Sender, now: float) -> None:
         self._downloads.pop(sender.link, None)
 
+    @on_message(mavlink.MAVLINK_MSG_ID_LOG_ERASE)
     def _refuse(self, message: Message, sender: Sender, now: float) -> None:
         self.vehicle.report(WARNING, "The log belongs to the run: it is not erased")

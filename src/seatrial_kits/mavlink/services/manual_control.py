@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 
 from pymavlink.dialects.v20 import all as mavlink
 
 from ..codec import Message
 from ..modes import MANUAL_MODES
-from ..service import NOTICE, Receiver, Service
+from ..service import NOTICE, Service, on_message
 from ..settings import Settings
 from ..transport import Sender, Transport
 from ..vehicle import MANUAL_RELEASED, Vehicle
@@ -62,14 +62,7 @@ class ManualControlService(Service):
         self._held_until = math.inf
         self._lost = False
 
-    @property
-    def receivers(self) -> Mapping[int, Receiver]:
-        """Messages that it takes in."""
-        return {
-            mavlink.MAVLINK_MSG_ID_MANUAL_CONTROL: self._take_axes,
-            mavlink.MAVLINK_MSG_ID_RC_CHANNELS_OVERRIDE: self._take_channels,
-        }
-
+    @on_message(mavlink.MAVLINK_MSG_ID_MANUAL_CONTROL)
     def _take_axes(self, message: Message, sender: Sender, now: float) -> None:
         if not self._steers(sender):
             return
@@ -78,6 +71,7 @@ class ManualControlService(Service):
         self.vehicle.ordered(message.get_type(), self.vehicle.manual)
         self._hold(now)
 
+    @on_message(mavlink.MAVLINK_MSG_ID_RC_CHANNELS_OVERRIDE)
     def _take_channels(self, message: Message, sender: Sender, now: float) -> None:
         if not self._steers(sender):
             return

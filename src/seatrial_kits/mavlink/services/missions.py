@@ -21,11 +21,12 @@ from ..service import (
     DENIED,
     FAILED,
     WARNING,
-    Builder,
     Command,
     Handler,
-    Receiver,
     Service,
+    builds,
+    on_command,
+    on_message,
     whole,
 )
 from ..settings import Settings
@@ -81,35 +82,13 @@ class MissionService(Service):
         """Leg that guidance is to follow."""
         return self._runner.leg
 
-    @property
-    def commands(self) -> Mapping[int, Handler]:
-        """Commands that it carries out."""
-        return {
-            mavlink.MAV_CMD_MISSION_START: self._start,
-            mavlink.MAV_CMD_DO_PAUSE_CONTINUE: self._pause_or_continue,
-            mavlink.MAV_CMD_DO_SET_MISSION_CURRENT: self._set_current,
-            mavlink.MAV_CMD_DO_CHANGE_SPEED: self._change_speed,
-        }
-
-    @property
-    def messages(self) -> Mapping[int, Builder]:
-        """Messages that it can build."""
-        return {mavlink.MAVLINK_MSG_ID_MISSION_CURRENT: self._current}
-
-    @property
-    def receivers(self) -> Mapping[int, Receiver]:
-        """Messages that it takes in."""
-        return {
-            mavlink.MAVLINK_MSG_ID_MISSION_SET_CURRENT: self._take_current,
-            mavlink.MAVLINK_MSG_ID_MISSION_ITEM: self._take_guided,
-            mavlink.MAVLINK_MSG_ID_MISSION_ITEM_INT: self._take_guided,
-        }
-
+    @on_message(mavlink.MAVLINK_MSG_ID_MISSION_SET_CURRENT)
     def _take_current(self, message: Message, sender: Sender, now: float) -> None:
         if not self._runner.set_current(message.seq):
             self.vehicle.report(WARNING, f"There is no mission item {message.seq}")
         self._requested = True
 
+    @on_message(mavlink.MAVLINK_MSG_ID_MISSION_ITEM, mavlink.MAVLINK_MSG_ID_MISSION_ITEM_INT)
     def _take_guided(self, message: Message, sender: Sender, now: float) -> None:
         """Go to a place in guided mode; items of a list are the transfer's."""
         if message.current != _GUIDED_ITEM:
@@ -132,6 +111,7 @@ class MissionService(Service):
 
     # ------------------------------------------------------------------ commands
 
+    @on_command(mavlink.MAV_CMD_MISSION_START)
     def _start(self, command: Command, sender: Sender, now: float) -> int:
         first, last = (0.0 if math.isnan(p) else p for p in command.parameters[:2])
         sequence, count = whole(first), len(self._plan.items)
@@ -149,6 +129,7 @@ class MissionService(Service):
             self._runner.restart()
         return ACCEPTED
 
+    @on_command(mavlink.MAV_CMD_DO_PAUSE_CONTINUE)
     def _pause_or_continue(self, command: Command, sender: Sender, now: float) -> int:
         goes_on = command.parameters[0]
         if goes_on not in (0.0, 1.0) or self.vehicle.mode.name != "auto":
@@ -156,6 +137,7 @@ class MissionService(Service):
         self._runner.paused = not goes_on
         return ACCEPTED
 
+    @on_command(mavlink.MAV_CMD_DO_SET_MISSION_CURRENT)
     def _set_current(self, command: Command, sender: Sender, now: float) -> int:
         sequence, resets = (whole(p) for p in command.parameters[:2])
         is_kept = sequence == -1 and not self.vehicle.dialect.is_ardupilot
@@ -166,6 +148,7 @@ class MissionService(Service):
         self._requested = True
         return ACCEPTED
 
+    @on_command(mavlink.MAV_CMD_DO_CHANGE_SPEED)
     def _change_speed(self, command: Command, sender: Sender, now: float) -> int:
         if self.vehicle.mode.name not in ("auto", "guided"):
             self.vehicle.report(WARNING, "Speeds change in a mission and in guided mode only")
@@ -209,6 +192,7 @@ class MissionService(Service):
         done = items[sequence].command if sequence < len(items) else None
         return done not in (*STORED, mavlink.MAV_CMD_DO_FENCE_ENABLE)
 
+    @builds(mavlink.MAVLINK_MSG_ID_MISSION_CURRENT)
     def _current(self, now: float) -> list[Message]:
         runner = self._runner
         in_auto = self.vehicle.mode.name == "auto"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from typing import ClassVar
 
 from pymavlink.dialects.v20 import all as mavlink
@@ -16,11 +16,11 @@ from ..service import (
     INFO,
     UNSUPPORTED,
     WARNING,
-    Builder,
     Command,
-    Handler,
-    Receiver,
     Service,
+    builds,
+    on_command,
+    on_message,
     whole,
 )
 from ..transport import Sender, Transport
@@ -47,26 +47,6 @@ class ModeService(Service):
         super().__init__(vehicle, transport)
         self.requirements: list[Requirement] = [self._needs_position]
 
-    @property
-    def commands(self) -> Mapping[int, Handler]:
-        """Commands that it carries out."""
-        return {
-            mavlink.MAV_CMD_DO_SET_MODE: self._set_mode,
-            mavlink.MAV_CMD_DO_SET_STANDARD_MODE: self._set_standard_mode,
-            mavlink.MAV_CMD_NAV_RETURN_TO_LAUNCH: self._return,
-            mavlink.MAV_CMD_NAV_LAND: self._surface,
-            mavlink.MAV_CMD_NAV_LOITER_UNLIM: self._hold,
-        }
-
-    @property
-    def messages(self) -> Mapping[int, Builder]:
-        """Messages that it can build."""
-        return {
-            mavlink.MAVLINK_MSG_ID_CURRENT_MODE: self._current,
-            mavlink.MAVLINK_MSG_ID_AVAILABLE_MODES: self._available,
-            mavlink.MAVLINK_MSG_ID_AVAILABLE_MODES_MONITOR: self._monitor,
-        }
-
     def enter(self, mode: Mode) -> str | None:
         """Enter a mode; return why not, None if it is entered."""
         for requirement in self.requirements:
@@ -78,19 +58,14 @@ class ModeService(Service):
             self.vehicle.report(INFO, f"Mode {mode.shown}")
         return None
 
-    @property
-    def receivers(self) -> Mapping[int, Receiver]:
-        """Messages that it takes in."""
-        return {
-            mavlink.MAVLINK_MSG_ID_SET_MODE: self._take_mode,
-        }
-
+    @on_message(mavlink.MAVLINK_MSG_ID_SET_MODE)
     def _take_mode(self, message: Message, sender: Sender, now: float) -> None:
         if message.base_mode & mavlink.MAV_MODE_FLAG_CUSTOM_MODE_ENABLED:
             mode = self.vehicle.dialect.by_custom_mode(message.custom_mode)
             self._entered(mode, message.custom_mode)
             self.vehicle.ordered("SET_MODE", message.custom_mode)
 
+    @on_command(mavlink.MAV_CMD_DO_SET_MODE)
     def _set_mode(self, command: Command, sender: Sender, now: float) -> int:
         base, main, sub = command.parameters[:3]
         custom = mavlink.MAV_MODE_FLAG_CUSTOM_MODE_ENABLED
@@ -98,6 +73,7 @@ class ModeService(Service):
             return DENIED
         return self._entered(self.vehicle.dialect.by_command(main, sub), main)
 
+    @on_command(mavlink.MAV_CMD_DO_SET_STANDARD_MODE)
     def _set_standard_mode(self, command: Command, sender: Sender, now: float) -> int:
         if self.vehicle.dialect.is_ardupilot:
             return UNSUPPORTED  # its modes are standard ones to nobody
@@ -105,12 +81,15 @@ class ModeService(Service):
         mode = None if standard is None else self.vehicle.dialect.by_standard(standard)
         return self._entered(mode, command.parameters[0])
 
+    @on_command(mavlink.MAV_CMD_NAV_RETURN_TO_LAUNCH)
     def _return(self, command: Command, sender: Sender, now: float) -> int:
         return self._entered_if_any("return")
 
+    @on_command(mavlink.MAV_CMD_NAV_LAND)
     def _surface(self, command: Command, sender: Sender, now: float) -> int:
         return self._entered_if_any("surface")
 
+    @on_command(mavlink.MAV_CMD_NAV_LOITER_UNLIM)
     def _hold(self, command: Command, sender: Sender, now: float) -> int:
         """Stay, as an ArduPilot's submarine does; others do not know the command."""
         known = self.vehicle.dialect.is_ardupilot and self.vehicle.identity.submerged
@@ -134,12 +113,14 @@ class ModeService(Service):
         lost = mode.name in POSITION_MODES and not self.vehicle.estimates.position_valid
         return "no position" if lost else None
 
+    @builds(mavlink.MAVLINK_MSG_ID_CURRENT_MODE)
     def _current(self, now: float) -> list[Message]:
         mode = self.vehicle.mode
         return [
             mavlink.MAVLink_current_mode_message(mode.standard, mode.custom_mode, mode.custom_mode)
         ]
 
+    @builds(mavlink.MAVLINK_MSG_ID_AVAILABLE_MODES)
     def _available(self, now: float) -> list[Message]:
         modes = self.vehicle.dialect.modes
         return [
@@ -149,6 +130,7 @@ class ModeService(Service):
             for index, mode in enumerate(modes, 1)
         ]
 
+    @builds(mavlink.MAVLINK_MSG_ID_AVAILABLE_MODES_MONITOR)
     def _monitor(self, now: float) -> list[Message]:
         """Say that the list of modes is still the same: a station need not request it again."""
         return [mavlink.MAVLink_available_modes_monitor_message(0)]

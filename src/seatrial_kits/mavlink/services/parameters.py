@@ -12,7 +12,7 @@ from pymavlink.dialects.v20 import all as mavlink
 from ..codec import Message
 from ..parameters.definition import INT8, INT16, INT32, REAL32
 from ..parameters.table import ParameterTable
-from ..service import WARNING, Receiver, Service
+from ..service import WARNING, Service, on_message
 from ..transport import Sender, Transport
 from ..vehicle import Vehicle
 
@@ -70,15 +70,7 @@ class ParameterService(Service):
             else mavlink.MAV_PROTOCOL_CAPABILITY_PARAM_ENCODE_C_CAST
         )
 
-    @property
-    def receivers(self) -> Mapping[int, Receiver]:
-        """Messages that it takes in."""
-        return {
-            mavlink.MAVLINK_MSG_ID_PARAM_REQUEST_LIST: self._begin_list,
-            mavlink.MAVLINK_MSG_ID_PARAM_REQUEST_READ: self._read,
-            mavlink.MAVLINK_MSG_ID_PARAM_SET: self._set,
-        }
-
+    @on_message(mavlink.MAVLINK_MSG_ID_PARAM_REQUEST_LIST)
     def _begin_list(self, message: Message, sender: Sender, now: float) -> None:
         running = self._listings.get(sender.link)
         begun = self.vehicle.link_time(now)
@@ -98,6 +90,7 @@ class ParameterService(Service):
                 listing.left -= 1
                 listing.due += 1.0 / RATE
 
+    @on_message(mavlink.MAVLINK_MSG_ID_PARAM_REQUEST_READ)
     def _read(self, message: Message, sender: Sender, now: float) -> None:
         name, index = message.param_id, message.param_index
         if index != _BY_NAME:
@@ -110,6 +103,7 @@ class ParameterService(Service):
         else:
             self._refuse(name, index, mavlink.MAV_PARAM_ERROR_DOES_NOT_EXIST, sender)
 
+    @on_message(mavlink.MAVLINK_MSG_ID_PARAM_SET)
     def _set(self, message: Message, sender: Sender, now: float) -> None:
         name = message.param_id
         if self._bytewise and name == _HASH:

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import ClassVar
 
 from pymavlink.dialects.v20 import all as mavlink
 
 from ..codec import Message
 from ..modes import MANUAL_MODES
-from ..service import ACCEPTED, Builder, Command, Handler, Service
+from ..service import ACCEPTED, Command, Service, builds, on_command
 from ..transport import Sender, Transport
 from ..vehicle import Vehicle
 
@@ -42,19 +41,6 @@ class PresenceService(Service):
         self._reported = (vehicle.mode, vehicle.armed, vehicle.failsafe)
         self._text_id = 0
 
-    @property
-    def commands(self) -> Mapping[int, Handler]:
-        """Commands that it carries out."""
-        return {mavlink.MAV_CMD_REQUEST_AUTOPILOT_CAPABILITIES: self._send_version}
-
-    @property
-    def messages(self) -> Mapping[int, Builder]:
-        """Messages that it can build."""
-        return {
-            mavlink.MAVLINK_MSG_ID_HEARTBEAT: self._heartbeat,
-            mavlink.MAVLINK_MSG_ID_AUTOPILOT_VERSION: self._version,
-        }
-
     def tick(self, now: float) -> None:
         """Send at once what has changed, and the status texts."""
         state = (self.vehicle.mode, self.vehicle.armed, self.vehicle.failsafe)
@@ -70,6 +56,7 @@ class PresenceService(Service):
         """Return the last HEARTBEAT: whatever the vehicle was, nobody drives it any more."""
         return self._made(armed=False, failsafe=False)
 
+    @builds(mavlink.MAVLINK_MSG_ID_HEARTBEAT)
     def _heartbeat(self, now: float) -> list[Message]:
         return [self._made(armed=self.vehicle.armed, failsafe=self.vehicle.failsafe)]
 
@@ -94,6 +81,7 @@ class PresenceService(Service):
             3,
         )
 
+    @builds(mavlink.MAVLINK_MSG_ID_AUTOPILOT_VERSION)
     def _version(self, now: float) -> list[Message]:
         identity = self.vehicle.identity
         return [
@@ -112,6 +100,7 @@ class PresenceService(Service):
             )
         ]
 
+    @on_command(mavlink.MAV_CMD_REQUEST_AUTOPILOT_CAPABILITIES)
     def _send_version(self, command: Command, sender: Sender, now: float) -> int:
         self.transport.send(sender.link, self._version(now)[0])
         return ACCEPTED

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass, field
 
 from pymavlink.dialects.v20 import all as mavlink
 
 from ..codec import Message
-from ..service import INFO, Receiver, Service
+from ..service import INFO, Service, on_message
 from ..settings import Settings
 from ..transport import Sender, Transport
 from ..vehicle import Vehicle
@@ -69,13 +69,6 @@ class StationService(Service):
         """By system and component."""
         self._left_alone = False
 
-    @property
-    def receivers(self) -> Mapping[int, Receiver]:
-        """Messages that it takes in."""
-        return {
-            mavlink.MAVLINK_MSG_ID_HEARTBEAT: self._note,
-        }
-
     def check(self) -> str | None:
         """Return the reason against arming, None if there is none."""
         settings = self._settings
@@ -87,6 +80,7 @@ class StationService(Service):
         """Return whether the failsafe misses a station: an ArduPilot that of one system alone."""
         return not self.vehicle.dialect.one_pilot or who[0] == self._settings.pilot_system
 
+    @on_message(mavlink.MAVLINK_MSG_ID_HEARTBEAT)
     def _note(self, message: Message, sender: Sender, now: float) -> None:
         if message.type != mavlink.MAV_TYPE_GCS:
             return

@@ -15,9 +15,9 @@ from ..service import (
     UNSUPPORTED,
     Builder,
     Command,
-    Handler,
-    Receiver,
     Service,
+    on_command,
+    on_message,
     whole,
 )
 from ..transport import Sender, Transport
@@ -107,22 +107,7 @@ class StreamService(Service):
         self._builders, self._defaults = builders, defaults
         self._schedules: dict[int, _Schedule] = {}
 
-    @property
-    def commands(self) -> Mapping[int, Handler]:
-        """Commands that it carries out."""
-        return {
-            mavlink.MAV_CMD_SET_MESSAGE_INTERVAL: self._set_interval,
-            mavlink.MAV_CMD_GET_MESSAGE_INTERVAL: self._send_interval,
-            mavlink.MAV_CMD_REQUEST_MESSAGE: self._send_once,
-        }
-
-    @property
-    def receivers(self) -> Mapping[int, Receiver]:
-        """Messages that it takes in."""
-        return {
-            mavlink.MAVLINK_MSG_ID_REQUEST_DATA_STREAM: self._change_group,
-        }
-
+    @on_message(mavlink.MAVLINK_MSG_ID_REQUEST_DATA_STREAM)
     def _change_group(self, message: Message, sender: Sender, now: float) -> None:
         wanted = message.req_message_rate if message.start_stop else 0
         for group, numbers in GROUPS.items():
@@ -158,6 +143,7 @@ class StreamService(Service):
         else:
             schedule.intervals.pop(number, None)
 
+    @on_command(mavlink.MAV_CMD_SET_MESSAGE_INTERVAL)
     def _set_interval(self, command: Command, sender: Sender, now: float) -> int:
         number, interval_us = whole(command.parameters[0]), whole(command.parameters[1])
         if number is None or interval_us is None:
@@ -171,6 +157,7 @@ class StreamService(Service):
         self._change(sender.link, number, interval)
         return ACCEPTED
 
+    @on_command(mavlink.MAV_CMD_GET_MESSAGE_INTERVAL)
     def _send_interval(self, command: Command, sender: Sender, now: float) -> int:
         number = whole(command.parameters[0])
         if number is None:
@@ -183,6 +170,7 @@ class StreamService(Service):
         )
         return ACCEPTED if number in self._builders else FAILED
 
+    @on_command(mavlink.MAV_CMD_REQUEST_MESSAGE)
     def _send_once(self, command: Command, sender: Sender, now: float) -> int:
         number, index = whole(command.parameters[0]), whole(command.parameters[1]) or 0
         if number is None or number not in self._builders:

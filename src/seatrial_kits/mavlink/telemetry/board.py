@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from typing import ClassVar
 
 from pymavlink.dialects.v20 import all as mavlink
@@ -13,7 +12,7 @@ from seatrial.model.unit_table import STANDARD_GRAVITY
 
 from ..codec import Message
 from ..scaling import deg_e7, int16, microseconds, milliseconds
-from ..service import Builder, Service
+from ..service import Service, builds
 from ..transport import Transport
 from ..vehicle import Vehicle
 
@@ -47,18 +46,6 @@ class BoardTelemetry(Service):
         self._vibration = (0.0, 0.0, 0.0)
         self._clipped = [0, 0, 0]
 
-    @property
-    def messages(self) -> Mapping[int, Builder]:
-        """Messages that it can build."""
-        return {
-            mavlink.MAVLINK_MSG_ID_RAW_IMU: self._imu,
-            mavlink.MAVLINK_MSG_ID_VIBRATION: self._vibrations,
-            mavlink.MAVLINK_MSG_ID_POWER_STATUS: self._power,
-            mavlink.MAVLINK_MSG_ID_AHRS2: self._second,
-            mavlink.MAVLINK_MSG_ID_RANGEFINDER: self._range,
-            mavlink.MAVLINK_MSG_ID_WATER_DEPTH: self._depth,
-        }
-
     def tick(self, now: float) -> None:
         """Take in the specific force."""
         e = self.vehicle.estimates
@@ -74,6 +61,7 @@ class BoardTelemetry(Service):
         for axis, each in enumerate(force):
             self._clipped[axis] += abs(each) > _CLIPS
 
+    @builds(mavlink.MAVLINK_MSG_ID_RAW_IMU)
     def _imu(self, now: float) -> list[Message]:
         e = self.vehicle.estimates
         if not (e.accelerometer_valid and e.gyro_valid):
@@ -82,6 +70,7 @@ class BoardTelemetry(Service):
         rates = (int16(w * 1e3) for w in e.rates)
         return [mavlink.MAVLink_raw_imu_message(microseconds(now), *force, *rates, 0, 0, 0)]
 
+    @builds(mavlink.MAVLINK_MSG_ID_VIBRATION)
     def _vibrations(self, now: float) -> list[Message]:
         if not self.vehicle.estimates.has("accelerometer"):
             return []
@@ -89,10 +78,12 @@ class BoardTelemetry(Service):
             mavlink.MAVLink_vibration_message(microseconds(now), *self._vibration, *self._clipped)
         ]
 
+    @builds(mavlink.MAVLINK_MSG_ID_POWER_STATUS)
     def _power(self, now: float) -> list[Message]:
         flags = mavlink.MAV_POWER_STATUS_BRICK_VALID | mavlink.MAV_POWER_STATUS_SERVO_VALID
         return [mavlink.MAVLink_power_status_message(_SUPPLY_MV, _SUPPLY_MV, flags)]
 
+    @builds(mavlink.MAVLINK_MSG_ID_AHRS2)
     def _second(self, now: float) -> list[Message]:
         e = self.vehicle.estimates
         if not e.position_valid:
@@ -101,10 +92,12 @@ class BoardTelemetry(Service):
         place = (altitude, deg_e7(latitude), deg_e7(longitude))
         return [mavlink.MAVLink_ahrs2_message(*e.shown_attitude, *place)]
 
+    @builds(mavlink.MAVLINK_MSG_ID_RANGEFINDER)
     def _range(self, now: float) -> list[Message]:
         distance = self.vehicle.estimates.ground_distance
         return [] if distance is None else [mavlink.MAVLink_rangefinder_message(distance, 0.0)]
 
+    @builds(mavlink.MAVLINK_MSG_ID_WATER_DEPTH)
     def _depth(self, now: float) -> list[Message]:
         e = self.vehicle.estimates
         if e.ground_distance is None or self.vehicle.identity.submerged or not e.position_valid:

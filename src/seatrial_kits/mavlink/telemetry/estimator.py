@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import math
+from collections.abc import Sequence
 from typing import ClassVar
 
 from pymavlink.dialects.v20 import all as mavlink
 
 from ..codec import Message
-from ..innovation import Innovation
 from ..scaling import microseconds
-from ..service import Builder, Service
+from ..service import Service, builds
 from ..transport import Transport
 from ..vehicle import Vehicle
 
@@ -45,14 +45,6 @@ class EstimatorTelemetry(Service):
         self._velocity, self._position = Innovation(2.0), Innovation(5.0)  # m/s, m
         self._height, self._heading = Innovation(2.0), Innovation(0.5, turns=True)  # m, rad
 
-    @property
-    def messages(self) -> Mapping[int, Builder]:
-        """Messages that it can build."""
-        return {
-            mavlink.MAVLINK_MSG_ID_EKF_STATUS_REPORT: self._report,
-            mavlink.MAVLINK_MSG_ID_ESTIMATOR_STATUS: self._status,
-        }
-
     def tick(self, now: float) -> None:
         """Take in the measurements."""
         e = self.vehicle.estimates
@@ -77,9 +69,11 @@ class EstimatorTelemetry(Service):
         flags |= _POSITION if e.position_valid else mavlink.EKF_CONST_POS_MODE
         return int(flags if "velocity" in e.begun else flags & ~_VELOCITY)
 
+    @builds(mavlink.MAVLINK_MSG_ID_EKF_STATUS_REPORT)
     def _report(self, now: float) -> list[Message]:
         return [mavlink.MAVLink_ekf_status_report_message(self._flags(), *self._ratios, 0.0)]
 
+    @builds(mavlink.MAVLINK_MSG_ID_ESTIMATOR_STATUS)
     def _status(self, now: float) -> list[Message]:
         if not self.vehicle.dialect.main_and_sub:
             return []
@@ -91,3 +85,44 @@ class EstimatorTelemetry(Service):
                 microseconds(now), self._flags(), *ratios, *accuracy
             )
         ]
+
+
+_SMOOTHING_S = 2.0
+_LOST_S = 10.0
+"""Time without a measurement after which its ratio is 1."""
+
+
+class Innovation:
+    """Ratio of the innovation to a ``gate``, smoothed; 1 and more is a measurement not to be used.
+
+    While nothing valid comes the ratio grows by 1 each 10 s. ``turns`` is for angles, rad.
+    """
+
+    def __init__(self, gate: float, *, turns: bool = False) -> None:
+        self._gate, self._turns = gate, turns
+        self._last: tuple[float, ...] | None = None
+        self._at = 0.0
+        self.ratio = 0.0
+
+    def update(
+        self, now: float, value: Sequence[float], rate: Sequence[float], *, valid: bool
+    ) -> None:
+        """Take in what is measured at a simulated time, s, and its rate, 1/s."""
+        if not valid:
+            if self._last is None:
+                self.ratio = min(self.ratio + (now - self._at) / _LOST_S, 2.0)
+            self._last, self._at = None, now
+            return
+        if self._last is None:
+            self._last, self._at = tuple(value), now
+            return
+        if tuple(value) == self._last:
+            return  # not measured anew
+        elapsed = now - self._at
+        missed = (
+            v - before - r * elapsed for v, before, r in zip(value, self._last, rate, strict=True)
+        )
+        found = math.hypot(*(math.remainder(x, math.tau) if self._turns else x for x in missed))
+        share = 1.0 - math.exp(-elapsed / _SMOOTHING_S)
+        self.ratio += share * (min(found / self._gate, 2.0) - self.ratio)
+        self._last, self._at = tuple(value), now

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from typing import ClassVar
 
 from pymavlink.dialects.v20 import all as mavlink
@@ -22,9 +21,7 @@ from ..scaling import (
     quaternion,
     uint16,
 )
-from ..service import Builder, Service
-
-_NO_QUATERNION = [math.nan, 0.0, 0.0, 0.0]
+from ..service import Service, builds
 
 
 class MotionTelemetry(Service):
@@ -47,19 +44,7 @@ class MotionTelemetry(Service):
         mavlink.MAVLINK_MSG_ID_SIM_STATE: 0.25,
     }
 
-    @property
-    def messages(self) -> Mapping[int, Builder]:
-        """Messages that it can build."""
-        return {
-            mavlink.MAVLINK_MSG_ID_ATTITUDE: self._attitude,
-            mavlink.MAVLINK_MSG_ID_ATTITUDE_QUATERNION: self._attitude_quaternion,
-            mavlink.MAVLINK_MSG_ID_LOCAL_POSITION_NED: self._local_position,
-            mavlink.MAVLINK_MSG_ID_GLOBAL_POSITION_INT: self._global_position,
-            mavlink.MAVLINK_MSG_ID_VFR_HUD: self._hud,
-            mavlink.MAVLINK_MSG_ID_ALTITUDE: self._altitude,
-            mavlink.MAVLINK_MSG_ID_SIM_STATE: self._truth,
-        }
-
+    @builds(mavlink.MAVLINK_MSG_ID_ATTITUDE)
     def _attitude(self, now: float) -> list[Message]:
         e = self.vehicle.estimates
         if not e.has("tilt", "heading", "gyro"):
@@ -70,6 +55,7 @@ class MotionTelemetry(Service):
             mavlink.MAVLink_attitude_message(milliseconds(now), phi, theta, heading, *e.shown_rates)
         ]
 
+    @builds(mavlink.MAVLINK_MSG_ID_ATTITUDE_QUATERNION)
     def _attitude_quaternion(self, now: float) -> list[Message]:
         e = self.vehicle.estimates
         if not (e.has("tilt") and e.has("heading") and e.has("tilt", "heading", "gyro")):
@@ -80,6 +66,7 @@ class MotionTelemetry(Service):
             )
         ]
 
+    @builds(mavlink.MAVLINK_MSG_ID_LOCAL_POSITION_NED)
     def _local_position(self, now: float) -> list[Message]:
         e = self.vehicle.estimates
         if not self._has_position():
@@ -91,6 +78,7 @@ class MotionTelemetry(Service):
             )
         ]
 
+    @builds(mavlink.MAVLINK_MSG_ID_GLOBAL_POSITION_INT)
     def _global_position(self, now: float) -> list[Message]:
         e = self.vehicle.estimates
         if not self._has_position():
@@ -112,6 +100,7 @@ class MotionTelemetry(Service):
             )
         ]
 
+    @builds(mavlink.MAVLINK_MSG_ID_VFR_HUD)
     def _hud(self, now: float) -> list[Message]:
         e = self.vehicle.estimates
         north, east, down = e.shown_velocity
@@ -132,6 +121,7 @@ class MotionTelemetry(Service):
             )
         ]
 
+    @builds(mavlink.MAVLINK_MSG_ID_ALTITUDE)
     def _altitude(self, now: float) -> list[Message]:
         e = self.vehicle.estimates
         down = e.shown_down
@@ -150,6 +140,7 @@ class MotionTelemetry(Service):
             )
         ]
 
+    @builds(mavlink.MAVLINK_MSG_ID_SIM_STATE)
     def _truth(self, now: float) -> list[Message]:
         truth = self.vehicle.truth
         if truth is None:

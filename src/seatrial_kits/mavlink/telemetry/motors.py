@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from typing import ClassVar
 
 from pymavlink.dialects.v20 import all as mavlink
 
 from ..codec import Message
 from ..scaling import uint16
-from ..service import Builder, Service
+from ..service import Service, builds
 from ..transport import Transport
 from ..vehicle import Vehicle
 
@@ -34,11 +33,6 @@ class MotorTelemetry(Service):
         self._drawn = [0.0] * 4
         self._count, self._before, self._is_known = 0, 0.0, False
 
-    @property
-    def messages(self) -> Mapping[int, Builder]:
-        """Messages that it can build."""
-        return {mavlink.MAVLINK_MSG_ID_ESC_TELEMETRY_1_TO_4: self._motors}
-
     def tick(self, now: float) -> None:
         """Add up the charge."""
         e = self.vehicle.estimates
@@ -47,6 +41,7 @@ class MotorTelemetry(Service):
             self._drawn[motor] += abs(current) * (now - self._before)
         self._before = now
 
+    @builds(mavlink.MAVLINK_MSG_ID_ESC_TELEMETRY_1_TO_4)
     def _motors(self, now: float) -> list[Message]:
         if not self._is_known or not self.vehicle.dialect.one_pilot:
             return []

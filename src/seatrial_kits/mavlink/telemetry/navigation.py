@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from typing import ClassVar
 
 from pymavlink.dialects.v20 import all as mavlink
@@ -12,7 +12,7 @@ from seatrial.links.geodesy import Ned
 
 from ..codec import Message
 from ..scaling import deg_e7, int16, milliseconds, uint16
-from ..service import Builder, Service
+from ..service import Service, builds
 from ..transport import Transport
 from ..vehicle import Vehicle
 
@@ -41,14 +41,7 @@ class NavigationTelemetry(Service):
         super().__init__(vehicle, transport)
         self._goal = goal
 
-    @property
-    def messages(self) -> Mapping[int, Builder]:
-        """Messages that it can build."""
-        return {
-            mavlink.MAVLINK_MSG_ID_NAV_CONTROLLER_OUTPUT: self._navigation,
-            mavlink.MAVLINK_MSG_ID_POSITION_TARGET_GLOBAL_INT: self._target,
-        }
-
+    @builds(mavlink.MAVLINK_MSG_ID_POSITION_TARGET_GLOBAL_INT)
     def _target(self, now: float) -> list[Message]:
         goal = self._goal()
         if goal is None:
@@ -63,6 +56,7 @@ class NavigationTelemetry(Service):
             )
         ]
 
+    @builds(mavlink.MAVLINK_MSG_ID_NAV_CONTROLLER_OUTPUT)
     def _navigation(self, now: float) -> list[Message]:
         e, way = self.vehicle.estimates, self.vehicle.estimates.way
         if way is None:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 
 from pymavlink.dialects.v20 import all as mavlink
 
@@ -12,7 +11,7 @@ from seatrial.physics.craft.kinematics import to_body
 
 from ..codec import Message
 from ..scaling import deg_e7, int16, int32, microseconds, quaternion
-from ..service import Builder, Service
+from ..service import Service, builds
 
 _UNKNOWN = [math.nan] * 21
 
@@ -25,14 +24,7 @@ class OdometryTelemetry(Service):
     covariances are not known. Without a valid position and an attitude there is none.
     """
 
-    @property
-    def messages(self) -> Mapping[int, Builder]:
-        """Messages that it can build."""
-        return {
-            mavlink.MAVLINK_MSG_ID_ODOMETRY: self._odometry,
-            mavlink.MAVLINK_MSG_ID_HIL_STATE_QUATERNION: self._truth,
-        }
-
+    @builds(mavlink.MAVLINK_MSG_ID_ODOMETRY)
     def _odometry(self, now: float) -> list[Message]:
         e = self.vehicle.estimates
         if not (e.position_valid and e.has("tilt") and e.has("heading")):
@@ -52,6 +44,7 @@ class OdometryTelemetry(Service):
             )
         ]
 
+    @builds(mavlink.MAVLINK_MSG_ID_HIL_STATE_QUATERNION)
     def _truth(self, now: float) -> list[Message]:
         truth = self.vehicle.truth
         if truth is None:

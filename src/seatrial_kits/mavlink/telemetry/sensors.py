@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from typing import ClassVar
 
 from pymavlink.dialects.v20 import all as mavlink
@@ -25,7 +24,7 @@ from ..scaling import (
     turned,
     uint16,
 )
-from ..service import Builder, Service
+from ..service import Service, builds
 from ..vehicle import NO_FIX
 
 _ACCELERATION, _RATES, _PRESSURE = 0x7, 0x38, 0x200
@@ -53,20 +52,7 @@ class SensorTelemetry(Service):
         mavlink.MAVLINK_MSG_ID_NAMED_VALUE_FLOAT: 0.5,
     }
 
-    @property
-    def messages(self) -> Mapping[int, Builder]:
-        """Messages that it can build."""
-        return {
-            mavlink.MAVLINK_MSG_ID_GPS_RAW_INT: self._gps,
-            mavlink.MAVLINK_MSG_ID_SCALED_IMU: self._scaled_imu,
-            mavlink.MAVLINK_MSG_ID_HIGHRES_IMU: self._highres_imu,
-            mavlink.MAVLINK_MSG_ID_SCALED_PRESSURE2: self._scaled_pressure,
-            mavlink.MAVLINK_MSG_ID_DISTANCE_SENSOR: self._distance,
-            mavlink.MAVLINK_MSG_ID_WIND: self._wind,
-            mavlink.MAVLINK_MSG_ID_WIND_COV: self._wind_cov,
-            mavlink.MAVLINK_MSG_ID_NAMED_VALUE_FLOAT: self._named,
-        }
-
+    @builds(mavlink.MAVLINK_MSG_ID_GPS_RAW_INT)
     def _gps(self, now: float) -> list[Message]:
         e = self.vehicle.estimates
         dives = self.vehicle.identity.submerged and not e.position_valid
@@ -92,6 +78,7 @@ class SensorTelemetry(Service):
             )
         ]
 
+    @builds(mavlink.MAVLINK_MSG_ID_SCALED_IMU)
     def _scaled_imu(self, now: float) -> list[Message]:
         e = self.vehicle.estimates
         if not (e.accelerometer_valid and e.gyro_valid):
@@ -107,6 +94,7 @@ class SensorTelemetry(Service):
             )
         ]
 
+    @builds(mavlink.MAVLINK_MSG_ID_HIGHRES_IMU)
     def _highres_imu(self, now: float) -> list[Message]:
         e, pressure = self.vehicle.estimates, self._pressure()
         measured = (
@@ -133,6 +121,7 @@ class SensorTelemetry(Service):
             )
         ]
 
+    @builds(mavlink.MAVLINK_MSG_ID_SCALED_PRESSURE2)
     def _scaled_pressure(self, now: float) -> list[Message]:
         pressure = self._pressure()
         if pressure is None:
@@ -143,6 +132,7 @@ class SensorTelemetry(Service):
             )
         ]
 
+    @builds(mavlink.MAVLINK_MSG_ID_DISTANCE_SENSOR)
     def _distance(self, now: float) -> list[Message]:
         distance = self.vehicle.estimates.ground_distance
         if distance is None:
@@ -160,6 +150,7 @@ class SensorTelemetry(Service):
             )
         ]
 
+    @builds(mavlink.MAVLINK_MSG_ID_WIND)
     def _wind(self, now: float) -> list[Message]:
         true = self._true_wind()
         if true is None:
@@ -167,6 +158,7 @@ class SensorTelemetry(Service):
         comes_from = compass_degrees(math.atan2(-true[1], -true[0]))
         return [mavlink.MAVLink_wind_message(comes_from, math.hypot(*true), 0.0)]
 
+    @builds(mavlink.MAVLINK_MSG_ID_WIND_COV)
     def _wind_cov(self, now: float) -> list[Message]:
         true = self._true_wind()
         if true is None:
@@ -174,6 +166,7 @@ class SensorTelemetry(Service):
         unknown = [math.nan] * 5
         return [mavlink.MAVLink_wind_cov_message(microseconds(now), *true, 0.0, *unknown)]
 
+    @builds(mavlink.MAVLINK_MSG_ID_NAMED_VALUE_FLOAT)
     def _named(self, now: float) -> list[Message]:
         return [
             mavlink.MAVLink_named_value_float_message(milliseconds(now), name.encode(), value)

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import ClassVar
 
 from pymavlink.dialects.v20 import all as mavlink
 
 from ..codec import Message
 from ..scaling import UNKNOWN_U16, clamped, int16, microseconds, milliseconds, uint16
-from ..service import Builder, Service
+from ..service import Service, builds
 from ..services.manual_control import shown_channels
 
 
@@ -31,17 +30,7 @@ class SystemTelemetry(Service):
         mavlink.MAVLINK_MSG_ID_RC_CHANNELS: 0.5,
     }
 
-    @property
-    def messages(self) -> Mapping[int, Builder]:
-        """Messages that it can build."""
-        return {
-            mavlink.MAVLINK_MSG_ID_SYS_STATUS: self._status,
-            mavlink.MAVLINK_MSG_ID_SYSTEM_TIME: self._time,
-            mavlink.MAVLINK_MSG_ID_EXTENDED_SYS_STATE: self._landed,
-            mavlink.MAVLINK_MSG_ID_SERVO_OUTPUT_RAW: self._servos,
-            mavlink.MAVLINK_MSG_ID_RC_CHANNELS: self._channels,
-        }
-
+    @builds(mavlink.MAVLINK_MSG_ID_SYS_STATUS)
     def _status(self, now: float) -> list[Message]:
         e, dives = self.vehicle.estimates, self.vehicle.identity.submerged
         fixes = "position" in e.connected and (e.position_valid or not dives)
@@ -89,21 +78,25 @@ class SystemTelemetry(Service):
             )
         ]
 
+    @builds(mavlink.MAVLINK_MSG_ID_SYSTEM_TIME)
     def _time(self, now: float) -> list[Message]:
         unix = self.vehicle.identity.boot_unix_us + microseconds(now)
         return [mavlink.MAVLink_system_time_message(unix, milliseconds(now))]
 
+    @builds(mavlink.MAVLINK_MSG_ID_EXTENDED_SYS_STATE)
     def _landed(self, now: float) -> list[Message]:
         on_ground = mavlink.MAV_LANDED_STATE_ON_GROUND  # what never flies has landed
         return [
             mavlink.MAVLink_extended_sys_state_message(mavlink.MAV_VTOL_STATE_UNDEFINED, on_ground)
         ]
 
+    @builds(mavlink.MAVLINK_MSG_ID_SERVO_OUTPUT_RAW)
     def _servos(self, now: float) -> list[Message]:
         pulses = [uint16(pulse * 1e6) for pulse in self.vehicle.estimates.pulses]
         time = microseconds(now) % (1 << 32)
         return [mavlink.MAVLink_servo_output_raw_message(time, 0, *pulses)]
 
+    @builds(mavlink.MAVLINK_MSG_ID_RC_CHANNELS)
     def _channels(self, now: float) -> list[Message]:
         channels = [width or UNKNOWN_U16 for width in shown_channels(self.vehicle)]
         return [

@@ -11,15 +11,7 @@ from seatrial.links.geodesy import Origin
 from seatrial.links.parameter_validation import start_us, whole_number
 from seatrial.links.text import Inbox, Outbox
 from seatrial.links.unconnected import NOT_CONNECTED, is_connected
-from seatrial.model.component import (
-    NS,
-    Component,
-    Input,
-    Noise,
-    Output,
-    Parameter,
-    terminal,
-)
+from seatrial.model.component import NS, Component, Input, Noise, Output, Parameter, terminal
 
 from .codec import VDM, VDO, read, sentences, to_air
 from .reporting import Schedule

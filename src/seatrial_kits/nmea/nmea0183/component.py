@@ -28,7 +28,6 @@ from ..received.outputs import QUANTITIES
 from ..received.publishing import Publisher, position
 from ..received.targets import Targets
 from .codec import decode, encode
-from .lines import Lines
 from .orders import Order, heading_ordered, last_reported, read_order
 from .ports import Nmea0183Ports
 from .quantities import LATE, READERS, quantities_of
@@ -338,3 +337,32 @@ class Nmea0183(Nmea0183Ports):
     def _position(self, latitude: float, longitude: float) -> tuple[float, float, float]:
         north, east, _ = self._origin.position(latitude, longitude, self.altitude)
         return north, east, 0.0
+
+
+_LONGEST = 1024
+"""Bytes without an end of line after which they are none."""
+
+
+class Lines:
+    """Collects what one sender sends until there is a whole sentence.
+
+    What stands before the ``$`` or ``!`` of a line (half a sentence, a tag block) is dropped.
+    """
+
+    def __init__(self, waiting: str = "") -> None:
+        self.waiting = waiting
+        """What has no end of line yet; text, so that it can be part of a component's state."""
+
+    def take(self, data: bytes) -> list[bytes]:
+        """Return the sentences that are whole now, without their ends of line."""
+        *whole, self.waiting = (
+            (self.waiting + data.decode("latin-1")).replace("\r", "\n").split("\n")
+        )
+        if len(self.waiting) > _LONGEST:
+            self.waiting = ""
+        return [found for line in whole if (found := _sentence(line))]
+
+
+def _sentence(line: str) -> bytes:
+    start = max(line.rfind("$"), line.rfind("!"))
+    return line[start:].strip().encode("latin-1") if start >= 0 else line.strip().encode("latin-1")

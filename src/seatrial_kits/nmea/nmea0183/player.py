@@ -17,7 +17,7 @@ from seatrial.links.text import Outbox
 from seatrial.model.component import Output, Parameter, terminal
 
 from .log_fields import SENTENCE
-from .log_times import past_midnight, stamp, time_of_day
+from .log_reader import past_midnight, stamp, time_of_day
 
 
 class Nmea0183Player(Player):

@@ -12,7 +12,7 @@ from collections.abc import Callable
 from typing import Any
 
 from ..received.memory import Values
-from .fields import CELSIUS, FATHOM, FOOT, KNOT, MILE
+from .codec import CELSIUS, FATHOM, FOOT, KNOT, MILE
 
 _KILOMETRES_PER_HOUR = 1.0 / 3.6
 _SPEED_UNITS = {"N": KNOT, "K": _KILOMETRES_PER_HOUR, "M": 1.0, "S": 1609.344 / 3600.0}
@@ -355,10 +355,7 @@ READERS: dict[str, Callable[[Any], Values]] = {
 }
 """By formatter."""
 
-LATE: dict[str, tuple[str, ...]] = {
-    "HDG": ("variation",),
-    "VHW": ("heading", "magnetic_heading"),
-}
+LATE: dict[str, tuple[str, ...]] = {"HDG": ("variation",), "VHW": ("heading", "magnetic_heading")}
 """Quantities that a sentence repeats of others, by formatter: used where nothing else has them."""
 
 

@@ -14,7 +14,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 
-from .fields import (
+from .codec import (
     CELSIUS,
     FATHOM,
     FOOT,

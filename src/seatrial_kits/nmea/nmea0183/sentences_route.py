@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from .fields import KNOT, MILE, Fields, bearing, mode, number, status, time
+from .codec import KNOT, MILE, Fields, bearing, mode, number, status, time
 from .readings import Readings
 
 _MOST_RMB = 9.99

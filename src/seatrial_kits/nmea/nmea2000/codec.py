@@ -7,13 +7,7 @@ from dataclasses import dataclass
 from functools import cache, lru_cache
 from typing import Any
 
-from nmea2000 import (
-    FieldTypes,
-    NMEA2000Decoder,
-    NMEA2000Field,
-    NMEA2000Message,
-    create_encoder,
-)
+from nmea2000 import FieldTypes, NMEA2000Decoder, NMEA2000Field, NMEA2000Message, create_encoder
 from nmea2000.input_formats import N2KFormat
 
 from seatrial_kits.can.frame import Frame

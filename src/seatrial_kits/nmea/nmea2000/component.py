@@ -21,13 +21,12 @@ from ..received.memory import Received, Values, count, preferred_sources
 from ..received.outputs import ORDERED, QUANTITIES
 from ..received.publishing import Publisher, position
 from ..received.targets import Targets
-from .address_claim import AddressClaim
+from .address_claim import AddressClaim, Identity, name_of
 from .ais_reports import AIS_PGNS, report
 from .catalogue import ALL, DATA, READABLE, intervals, sends
 from .codec import GLOBAL, Decoder, Encoder, Message, header
 from .group_functions import serve
 from .measurements import messages
-from .name import Identity, name_of
 from .ports import Nmea2000Ports
 from .quantities import LATE, READERS
 from .services import HEARTBEAT_S, answer, heartbeat

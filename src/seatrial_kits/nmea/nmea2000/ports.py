@@ -6,19 +6,12 @@ from typing import Any, ClassVar
 
 from seatrial.links.parameter_validation import start_us
 from seatrial.links.unconnected import NOT_CONNECTED
-from seatrial.model.component import (
-    Component,
-    Input,
-    Noise,
-    Output,
-    Parameter,
-    terminal,
-)
+from seatrial.model.component import Component, Input, Noise, Output, Parameter, terminal
 
 from ..received.memory import preferred_sources
 from ..received.outputs import ENGINES, QUANTITIES, received_outputs
+from . import catalogue
 from .address_claim import HIGHEST
-from .catalogue import check_intervals, check_sends
 
 _NED = ("north", "east", "down")
 _EULER = ("phi", "theta", "psi")
@@ -42,12 +35,12 @@ def check_preferred(text: str) -> None:
 class Nmea2000Ports(received_outputs("bus_"), Noise, Component):  # type: ignore[misc]
     """Parameters, inputs and outputs of `Nmea2000`."""
 
-    sends = Parameter("", "1", "PGNs that it sends, separated by spaces", check=check_sends)
+    sends = Parameter("", "1", "PGNs that it sends, separated by spaces", check=catalogue.sends)
     intervals = Parameter(
         "",
         "1",
         "PGN SECONDS of intervals that are not the standard's; with ;",
-        check=check_intervals,
+        check=catalogue.intervals,
     )
     address = Parameter(35.0, "1", "address that it claims first", min=0.0, max=float(HIGHEST))
     arbitrary_address = Parameter(
@@ -94,10 +87,7 @@ class Nmea2000Ports(received_outputs("bus_"), Noise, Component):  # type: ignore
     )
 
     prefer = Parameter(
-        "",
-        "1",
-        "QUANTITY ADDRESS of sources to use, the best first; with ;",
-        check=check_preferred,
+        "", "1", "QUANTITY ADDRESS of sources to use, the best first; with ;", check=check_preferred
     )
 
     rx = Input("1", "operations from the bus", type=str, role="can")

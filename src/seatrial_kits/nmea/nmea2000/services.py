@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
+from .address_claim import Identity
 from .catalogue import NETWORK, RECEIVED
 from .codec import GLOBAL, Message
-from .name import Identity
 
 HEARTBEAT_S = 60.0
 _MOST_HEARTBEATS = 253

@@ -9,13 +9,7 @@ from typing import Any
 
 from seatrial.links.geodesy import Ned, Origin
 
-from .directions import (
-    Variation,
-    magnetic_direction,
-    modelled,
-    true_direction,
-    variation_of,
-)
+from .directions import Variation, magnetic_direction, modelled, true_direction, variation_of
 from .memory import Received
 from .outputs import DIRECTIONS, ENGINE, ENGINES, ORDERED, SINGLE, TARGETS, WAYPOINT, WIND
 from .targets import Targets

@@ -7,8 +7,8 @@ from nmea2000 import NMEA2000Decoder
 
 from seatrial_kits.can.frame import Frame
 from seatrial_kits.can.messages import message
+from seatrial_kits.nmea.nmea2000.address_claim import name_of
 from seatrial_kits.nmea.nmea2000.codec import Decoder
-from seatrial_kits.nmea.nmea2000.name import name_of
 
 CLAIM = 0x18EEFF21
 

@@ -8,9 +8,9 @@ import pytest
 from seatrial.errors import InputError
 from seatrial.system.profile.profile import check_profile, load_profile
 from seatrial_kits.can.frame import Frame
+from seatrial_kits.nmea.nmea2000.address_claim import name_of
 from seatrial_kits.nmea.nmea2000.catalogue import ALL, DATA, NETWORK
 from seatrial_kits.nmea.nmea2000.codec import GLOBAL, Encoder, Message
-from seatrial_kits.nmea.nmea2000.name import name_of
 
 from .network import Network, node
 

@@ -1,9 +1,3 @@
 """Headers of avr-libc that sketches include."""
 
-DATA_FILES = (
-    "eeprom.h",
-    "interrupt.h",
-    "io.h",
-    "pgmspace.h",
-    "wdt.h",
-)
+DATA_FILES = ("eeprom.h", "interrupt.h", "io.h", "pgmspace.h", "wdt.h")
