@@ -38,7 +38,7 @@ COMMANDS = {
     ),
     "describe": Command(
         "seatrial.cli.describe:describe",
-        "Show a rig's components, rigs inside it, every connection, and what is left open.",
+        "Show a rig's components, inner rigs, connections, and open inputs.",
     ),
     "move-vehicle": Command(
         "seatrial.cli.move_vehicle:move",
@@ -56,7 +56,7 @@ COMMANDS = {
     ),
     "doctor": Command(
         "seatrial.cli.doctor:doctor",
-        "Show what works on this machine, what is missing, and how to fix it.",
+        "Check this machine: working parts, missing parts, and remedies.",
     ),
     "docs": Command(
         "seatrial.cli.pages:docs",
