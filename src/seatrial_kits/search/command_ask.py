@@ -36,7 +36,8 @@ def ask(
             metavar="QUESTION",
             help="'limits': the boundary of the passing region; 'worst-case': the least "
             "robustness, and the smallest change that fails; 'sensitivity': how much each key "
-            "matters; 'rare': how likely a failure is; 'tune': the best values of gains over all that varies.",
+            "matters; 'rare': how likely a failure is; 'tune': the best values of gains over all "
+            "that varies.",
         ),
     ],
     engine: EngineName = "fmu",
