@@ -40,7 +40,7 @@ class Flow(NamedTuple):
 
 
 class Screw(NamedTuple):
-    """What the propeller does."""
+    """Thrust, torque and side force of the propeller."""
 
     rate: Any
     thrust: Any
