@@ -40,7 +40,7 @@ class Flow(NamedTuple):
 
 
 class Screw(NamedTuple):
-    """Thrust, torque and side force of the propeller."""
+    """Rate, thrust, torque and advance ratio of the propeller."""
 
     rate: Any
     thrust: Any
