@@ -31,8 +31,10 @@ def stacked(matrix, wanted, weights):
 
 
 def solved(matrix, wanted, weights, low, high):
-    effort = np.full(matrix.shape[1], EFFORT)
-    return weighted_least_squares(matrix, wanted, weights, effort, low, high)
+    numbers = (own.tolist() for own in (matrix.T, wanted, weights, low, high))
+    columns, target, weight, *bounds = numbers
+    effort = [EFFORT] * len(columns)
+    return np.array(weighted_least_squares(columns, target, weight, effort, *bounds))
 
 
 @given(NUMBERS)

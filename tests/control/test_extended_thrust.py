@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.optimize import minimize
 
-from seatrial.control.allocation.extended_thrust import EFFORT, Demand, Shares, components
+from seatrial.control.allocation.extended_thrust import EFFORT, Demand, Shares, Vector, components
 
 PLACES = {
     "two aft, one forward": [(-8.0, 2.0), (-8.0, -2.0), (9.0, 0.0)],
@@ -63,12 +63,20 @@ def best(demand, others, along, abeam, first):
     return found.x, value
 
 
+def found_components(demand, others, along, abeam, starts):
+    """Return the components, k by 2, of propulsors with columns ``along`` and ``abeam``."""
+    shares = Shares(others.columns.T.tolist(), others.low.tolist(), others.high.tolist())
+    rows = zip(along.T.tolist(), abeam.T.tolist(), starts, strict=True)
+    parts = [Vector(*row, turns=True, low=-1.0, high=1.0) for row in rows]
+    return np.array(components(Demand(*(d.tolist() for d in demand)), shares, parts))
+
+
 @pytest.mark.parametrize("where", PLACES)
 @given(st.integers(0, 2**32 - 1), st.floats(-np.pi, np.pi))
 def test_it_is_the_optimum(where, seed, start):
     demand, others, along, abeam = problem(where, np.random.default_rng(seed))
     starts = np.full(along.shape[1], start)
-    forces = components(demand, others, along, abeam, starts)
+    forces = found_components(demand, others, along, abeam, starts)
     assert np.hypot(*forces.T).max() <= 1.0 + 1e-12
     # The tunnels' shares that go with these forces, by SciPy: the forces are fixed.
     mine = np.concatenate([np.zeros(2), forces[:, 0], forces[:, 1]])
@@ -85,5 +93,5 @@ def test_a_single_one_gives_what_is_nearest_within_its_circle():
     none = Shares(np.zeros((2, 0)), np.zeros(0), np.zeros(0))
     for angle in np.linspace(-3.0, 3.0, 13):
         wanted = 50.0 * np.array([np.cos(angle), np.sin(angle)])
-        (force,) = components(Demand(wanted, np.ones(2)), none, along, abeam, np.zeros(1))
+        (force,) = found_components(Demand(wanted, np.ones(2)), none, along, abeam, np.zeros(1))
         np.testing.assert_allclose(force, wanted / 50.0, atol=1e-6)

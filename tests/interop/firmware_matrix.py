@@ -54,7 +54,7 @@ VEHICLES = {
 }
 _CURRENT = 'current = { speed = "0.4 m/s", direction = "90 deg" }'
 _WIND = 'wind = { speed = "5 m/s", direction = "60 deg", spectrum = "norsok" }'
-_WAVES = 'sea = { spectrum = "jonswap", height = "20 cm", period = "3 s", direction = "90 deg" }'
+_WAVES = 'sea = { spectrum = "jonswap", height = "20 cm", period = "3 s", direction = "90 deg", components_per_octave = 20 }'
 SEAS = {
     "calm": (),
     "current": (_CURRENT,),

@@ -7,12 +7,12 @@ import pytest
 
 from seatrial.errors import InputError
 from seatrial.physics.sea.seastate import SeaState
-from seatrial.physics.sea.spectra import Jonswap
+from seatrial.physics.sea.spectra import Jonswap, Torsethaugen, moment
+from seatrial.physics.sea.spreading import cos_2s
+from seatrial.physics.sea.waves import irregular
 
 HEIGHT, PERIOD = 2.0, 8.0
 HOUR, STEP, HOURS, SEEDS = 3600.0, 0.5, 3, 10
-WIDTH = 0.6594 * 2 * math.pi / PERIOD
-"""m0^2 / int S^2 dw of JONSWAP, gamma 3.3, rad/s."""
 
 
 def record(state):
@@ -24,27 +24,85 @@ def record(state):
     return np.real(within @ begun.T).T.ravel()
 
 
+def ten(**sea):
+    return [record(SeaState(seed=seed, **sea)) for seed in range(SEEDS)]
+
+
+def heights_of_hours(records):
+    """Return Hm0 of each hour, (SEEDS, HOURS)."""
+    return 4 * np.array([r.reshape(HOURS, -1).std(axis=1) for r in records])
+
+
+def variation(width):
+    """Return CoV(Hm0) of an hour of a Gaussian sea, 0.5 sqrt(2 pi / (W T)), W in rad/s."""
+    return 0.5 * math.sqrt(2 * math.pi / (width * HOUR))
+
+
 @pytest.fixture(scope="module")
 def records():
-    states = (
-        SeaState("jonswap", HEIGHT, PERIOD, seed=s, components_per_octave=0) for s in range(SEEDS)
-    )
-    return [record(state) for state in states]
+    return ten(spectrum="jonswap", height=HEIGHT, period=PERIOD)
 
 
-def variation(all_records):
-    hours = np.concatenate([r.reshape(HOURS, -1) for r in all_records])
-    heights = 4 * hours.std(axis=1)
-    return heights.mean(), heights.std(ddof=1) / heights.mean()
-
-
-def test_hours_differ_as_those_of_a_gaussian_sea(records):
-    # Of a Gaussian record: CoV(Hm0) = 0.5 sqrt(2 pi / (W T)), 2.9 % here.
-    expected = 0.5 * math.sqrt(2 * math.pi / (WIDTH * HOUR))
-    mean, found = variation(records)
+# W / wp of JONSWAP by gamma: the table of the sea's specification.
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("height", "period", "gamma", "width"),
+    [(2.0, 8.0, 3.3, 0.65940), (0.1, 2.5, 1.0, 1.10982), (4.0, 12.0, 7.0, 0.43420)],
+)
+def test_hours_differ_as_those_of_a_gaussian_sea(height, period, gamma, width):
+    found = heights_of_hours(ten(spectrum="jonswap", height=height, period=period, gamma=gamma))
+    expected = variation(width * 2 * math.pi / period)
     count = HOURS * SEEDS
-    assert mean == pytest.approx(HEIGHT, rel=3 * expected / math.sqrt(count))
-    assert found == pytest.approx(expected, rel=3 / math.sqrt(2 * count))  # 3 standard errors
+    # 3 standard errors each: of the mean, of the deviation of all hours, and of that of the hours
+    # of one sea from each other, which has 2 degrees of freedom a sea.
+    assert found.mean() == pytest.approx(height, rel=3 * expected / math.sqrt(count))
+    assert found.std() / height == pytest.approx(expected, rel=3 / math.sqrt(2 * count))
+    of_one = math.sqrt(found.var(axis=1, ddof=1).mean()) / height
+    assert of_one == pytest.approx(expected, rel=3 / math.sqrt(4 * SEEDS))
+
+
+def test_a_fixed_number_to_the_octave_has_hours_alike():
+    sea = {"spectrum": "jonswap", "height": HEIGHT, "period": PERIOD}
+    hours = heights_of_hours(ten(components_per_octave=20, **sea))
+    # CoV 0.1 to 0.7 % (the sea's specification).
+    assert 0.001 < hours.std() / HEIGHT < 0.007
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("spectrum", [Jonswap(2.0, 8.0), Torsethaugen(2.5, 8.0)])
+def test_frequencies_are_spread_as_the_energy_is(spectrum):
+    seas = [irregular(spectrum, direction=0.0, seed=s, high=8.0, per_octave=0) for s in range(100)]
+    omega = np.concatenate([sea.omega for sea in seas])
+    energy = np.concatenate([0.5 * sea.amplitude**2 for sea in seas]) / len(seas)
+    # In a fifth of the energy 12 waves fall on either side of a frequency by chance: over 100 seas
+    # the share below it has a standard deviation of at most 0.2 / (2 sqrt(1200)) = 0.003.
+    for at in (0.6, 0.8, 0.9, 1.0, 1.3, 2.0, 4.0):
+        below = moment(spectrum, 0, 0.3, at)
+        assert energy[omega < at].sum() == pytest.approx(
+            below, abs=0.01 * moment(spectrum, 0, 0.3, 8.0)
+        )
+    for order, error in ((-1, 0.01), (1, 0.01), (2, 0.02), (4, 0.02)):
+        found = np.sum(energy * omega**order)
+        expected = moment(spectrum, order, 0.5 * min(spectrum.peaks), 8.0)
+        assert found == pytest.approx(expected, rel=error)
+
+
+def test_a_wave_depends_on_seed_and_place_in_the_spectrum_alone():
+    def sea(height, high, seed=5):
+        spectrum = Jonswap(height, PERIOD)
+        return irregular(
+            spectrum, direction=0.2, seed=seed, high=high, spreading=cos_2s(10), per_octave=0
+        )
+
+    one, other, higher = sea(1.0, 12.0), sea(1.0, 8.0), sea(2.0, 12.0)
+    count = len(other.omega)
+    for name in ("omega", "direction", "phase"):
+        assert (getattr(one, name)[:count] == getattr(other, name)).all()
+        assert (getattr(one, name) == getattr(higher, name)).all()
+    np.testing.assert_allclose(higher.amplitude, 2 * one.amplitude, rtol=1e-12)
+    assert not (sea(1.0, 12.0, seed=6).phase == one.phase).any()
+    total = 0.5 * np.sum(one.amplitude**2)
+    assert total == pytest.approx(moment(Jonswap(1.0, PERIOD), 0, 0.3, 13.0), rel=2e-3)
 
 
 def test_kurtosis_is_a_gaussian_one(records):
@@ -59,7 +117,7 @@ def test_heights_are_rayleigh_distributed(records):
         up = np.flatnonzero((r[:-1] < 0) & (r[1:] >= 0)) + 1
         heights += [np.ptp(part) for part in np.split(r, up)[1:-1]]
     heights = np.sort(heights)
-    # Linear narrow seas: H1/3 = 0.964 Hm0 and a mean of 0.605 Hm0 for gamma 3.3 (sea.md, section 2).
+    # Linear narrow seas: H1/3 = 0.964 Hm0 and a mean of 0.605 Hm0 for gamma 3.3 (the sea's specification).
     assert heights[-len(heights) // 3 :].mean() == pytest.approx(0.964 * HEIGHT, rel=0.02)
     assert heights.mean() == pytest.approx(0.605 * HEIGHT, rel=0.03)
 

@@ -8,6 +8,7 @@ from scipy.stats import kstest
 
 from seatrial.errors import InputError
 from seatrial.physics.sea.lattice import upper_frequency
+from seatrial.physics.sea.orbital import Orbital
 from seatrial.physics.sea.spectra import Jonswap, Torsethaugen, moment
 from seatrial.physics.sea.spreading import cos_2s, cos_n
 from seatrial.physics.sea.waves import Waves, irregular, regular
@@ -144,3 +145,16 @@ def test_impossible_seas_are_refused():
         Waves([1.0], [1.0, 2.0], [0.0], [0.0])
     with pytest.raises(InputError, match="height"):
         regular(0.0, 4.0, 0.0)
+
+
+@pytest.mark.parametrize("depth", [math.inf, 8.0])
+def test_above_the_surface_water_moves_as_the_surface_does(depth):
+    sea = irregular(SEA, direction=0.7, seed=3, high=12.0, depth=depth)
+    orbital, t, place = Orbital(sea), 3.0, (2.0, -1.0)
+    surface = -float(sea.elevation(t, place))
+    there = sea.motion(t, [*place, surface])
+    for above in (0.0, 0.5, 50.0):
+        elevation, moved = orbital.at(t, *place, surface - above)
+        assert elevation == pytest.approx(-surface, rel=1e-12)
+        np.testing.assert_allclose(moved[:3], there.velocity, atol=1e-12)
+        np.testing.assert_allclose(moved[3:], there.acceleration, atol=1e-12)

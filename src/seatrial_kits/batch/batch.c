@@ -173,6 +173,7 @@ static void *worked(void *given) {
     const double h = (double)(share->steps * STEP_NS) / 1e9;
     for (int64_t i = share->first; i < share->last; i++) {
         Copy *copy = share->batch->copies + i;
+        if (i + 1 < share->last) rig_fetch(copy[1].rig);
         if (copy->failed) continue;
         rig_lend(copy->rig, share->work);
         if (share->rows) {

@@ -13,6 +13,8 @@ from seatrial.cli.answer import answer
 from seatrial.cli.run_options import Open, Port
 from seatrial.cli.show import console
 from seatrial.cli.stopping import stoppable
+from seatrial.errors import InputError
+from seatrial.plugins import service
 from seatrial.trial.records.run_folder import load_run
 
 
@@ -23,8 +25,14 @@ def play(
     ] = None,
     port: Port = 0,
     open_: Open = False,
+    ros2: Annotated[
+        bool, typer.Option("--ros2", help="No page: to nodes of ROS 2, in real time.")
+    ] = False,
 ) -> None:
-    """Play a run back in three dimensions, in a browser."""
+    """Play a run back in three dimensions, in a browser, or to nodes of ROS 2."""
+    if ros2:
+        _play_to_nodes(folder, ghost)
+        return
     from .playback import Playback
     from .server import PageServer
 
@@ -39,6 +47,16 @@ def play(
     finally:
         server.stop()
     show_refused(server.gate.refused)
+
+
+def _play_to_nodes(folder: Path, ghost: Path | None) -> None:
+    if ghost is not None:
+        raise InputError(f"--ros2 plays one run; {ghost} is a second one")
+    run = load_run(folder)
+    with stoppable() as stop:
+        written = service("ros2.play")(run, stop.requested)
+    answer.result = {"messages": written}
+    console.print(f"{written} messages")
 
 
 def show_address(address: str, open_: bool) -> None:

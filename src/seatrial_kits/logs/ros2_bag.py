@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import shutil
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -17,18 +17,21 @@ from seatrial.trial.records.scene import WORLD, Craft, crafts, rows
 
 from .record import Column, columns, nanoseconds
 
-_PLAIN = {"Real": "Float64", "Integer": "Int64", "Boolean": "Bool", "String": "String"}
-"""Types of std_msgs for single signals; bytes have none."""
+_PLAIN = {"Real": "float64", "Integer": "int64", "Boolean": "bool", "String": "string"}
+"""Types of fields; bytes have none."""
+_PACKAGE = "seatrial_msgs"
+"""Of the types of components: their definitions are in the bag, and nowhere else."""
 
 
 def write_ros2_bag(run: Run, path: Path) -> None:
     """Write the record of a run as a folder with a ROS 2 bag.
 
-    Each recorded number, flag and text is a topic of std_msgs, ``/vehicle/hull/position/x``.
-    Craft are in the axes of ROS (REP 103, REP 105): ``/tf`` from "map", east-north-up, to
-    NAME, ahead-left-up; ``/NAME/odometry`` nav_msgs/Odometry with velocity and rates in body
-    axes; ``/NAME/imu`` sensor_msgs/Imu, the truth without noise; ``/NAME/fix``
-    sensor_msgs/NavSatFix, if the profile says a home. Times are those of the simulation.
+    Each component is a topic, ``/vehicle/hull``, whose recorded numbers, flags and texts are the
+    fields of its messages, ``position_x``; their type is defined in the bag. Craft are in the
+    axes of ROS (REP 103, REP 105): ``/tf`` from "map", east-north-up, to NAME, ahead-left-up; below ``/NAME`` the topics of the kit ros2: ``odometry/ground_truth``
+    nav_msgs/Odometry with velocity and rates in body axes; ``imu/data`` sensor_msgs/Imu, the truth
+    without noise; ``gnss/fix`` sensor_msgs/NavSatFix, if the profile says a home. Times are those
+    of the simulation.
 
     Raises InputError if ``path`` is there already, if the package rosbags is not installed,
     and for a record that begins before the time 0.
@@ -50,11 +53,13 @@ def write_ros2_bag(run: Run, path: Path) -> None:
 
 
 def _write(run: Run, path: Path, times: Sequence[int]) -> None:
-    from rosbags.rosbag2 import StoragePlugin, Writer
+    from rosbags.rosbag2 import CompressionFormat, CompressionMode, StoragePlugin, Writer
     from rosbags.typesys import Stores, get_typestore
 
     store = get_typestore(Stores.ROS2_HUMBLE)
-    with Writer(path, version=9, storage_plugin=StoragePlugin.MCAP) as bag:
+    bag = Writer(path, version=9, storage_plugin=StoragePlugin.MCAP)
+    bag.set_compression(CompressionMode.STORAGE, CompressionFormat.ZSTD)
+    with bag:
 
         def topic(name: str, kind: str) -> Callable[[int, Any], None]:
             connection = bag.add_connection(name, kind, typestore=store)
@@ -70,16 +75,43 @@ def _write(run: Run, path: Path, times: Sequence[int]) -> None:
                 write = topic(f"/{_token(craft.name)}/{name}", kind)
                 for time, message in zip(times, messages, strict=True):
                     write(time, message)
-        for signal in columns(run):
-            if signal.type in _PLAIN:
-                _write_signal(topic, signal, times, store.types)
+        for name, signals in _by_component(run).items():
+            _write_component(topic, name, signals, times, store)
 
 
-def _write_signal(topic: Any, signal: Column, times: Sequence[int], types: Any) -> None:
-    kind = f"std_msgs/msg/{_PLAIN[signal.type]}"
-    write = topic("/" + "/".join(_token(part) for part in signal.name.split(".")), kind)
-    for time, value in zip(times, signal.values, strict=True):
-        write(time, types[kind](data=value))
+def _by_component(run: Run) -> Mapping[str, list[Column]]:
+    """Return what messages can hold, by the component's path; the longest path is the nearest."""
+    paths = sorted(run.manifest["components"], key=len, reverse=True)
+    found: dict[str, list[Column]] = {}
+    for signal in columns(run):
+        if signal.type in _PLAIN:
+            first = signal.name.partition(".")[0]
+            owner = next((p for p in paths if signal.name.startswith(f"{p}.")), first)
+            found.setdefault(owner, []).append(signal)
+    return found
+
+
+def _write_component(
+    topic: Any, path: str, signals: Sequence[Column], times: Sequence[int], store: Any
+) -> None:
+    from rosbags.typesys import get_types_from_msg
+
+    names: dict[str, Column] = {}
+    for signal in signals:
+        field = _token(signal.name.removeprefix(f"{path}.")).lower().strip("_")
+        field = field if field[:1].isalpha() else f"x{field}"
+        while field in names:
+            field += "_x"
+        names[field] = signal
+    parts = [_token(part) for part in path.split(".")]
+    kind = f"{_PACKAGE}/msg/{''.join(part.title().replace('_', '') for part in parts)}"
+    while kind in store.types:
+        kind += "X"
+    fields = "".join(f"{_PLAIN[signal.type]} {field}\n" for field, signal in names.items())
+    store.register(get_types_from_msg(fields, kind))
+    write, made = topic("/" + "/".join(parts), kind), store.types[kind]
+    for time, row in zip(times, zip(*(s.values for s in signals), strict=True), strict=True):
+        write(time, made(*row))
 
 
 def _write_frames(write: Any, found: Sequence[Craft], times: Sequence[int], types: Any) -> None:
@@ -103,11 +135,11 @@ def _of_craft(
     craft: Craft, times: Sequence[int], types: Any
 ) -> Iterator[tuple[str, str, Iterator[Any]]]:
     if craft.velocity is not None and craft.rates is not None:
-        yield "odometry", "nav_msgs/msg/Odometry", _odometry(craft, times, types)
+        yield "odometry/ground_truth", "nav_msgs/msg/Odometry", _odometry(craft, times, types)
     if craft.specific_force is not None and craft.rates is not None:
-        yield "imu", "sensor_msgs/msg/Imu", _imu(craft, times, types)
+        yield "imu/data", "sensor_msgs/msg/Imu", _imu(craft, times, types)
     if craft.geodetic is not None:
-        yield "fix", "sensor_msgs/msg/NavSatFix", _fixes(craft, times, types)
+        yield "gnss/fix", "sensor_msgs/msg/NavSatFix", _fixes(craft, times, types)
 
 
 def _odometry(craft: Craft, times: Sequence[int], types: Any) -> Iterator[Any]:

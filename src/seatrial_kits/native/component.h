@@ -3,6 +3,7 @@
 #ifndef COMPONENT_H
 #define COMPONENT_H
 
+#include <stddef.h>
 #include <stdint.h>
 
 #include "fmi2Functions.h"
@@ -19,10 +20,9 @@ typedef struct { /* in turn round the first `size` entries, a power of two: what
 } Queue;
 
 typedef struct {
-    int what, of, bad;
+    int number, of; /* number: negative for a text that is none */
     double at, grows_over;
     int counts[FAULT_SETTINGS];
-    double settings[FAULT_SETTINGS][FAULT_VALUES];
 } Fault;
 
 #if !defined(MODEL_H) /* of a rig as one FMU, each component has one of another name */
@@ -35,29 +35,36 @@ typedef int (*Surroundings)(double t, const double *state, double *around);
 
 typedef enum { INSTANTIATED, INITIALISING, RUNNING, TERMINATED } Phase;
 
-typedef struct {
-    uint64_t fmu;               /* of which it is a state */
-    double values[SCALARS + 1]; /* of all types, by value reference */
+typedef struct { /* first what every step touches: many instances must fit in the caches */
+    uint64_t fmu; /* of which it is a state */
     long long now_ns;
     double reached; /* the same as the host has it, s */
     Phase phase;
     int stale, restart, failed;
-    char texts[TEXTS + 1][TEXT_SIZE]; /* inputs of text */
-    int words[TEXTS + 1];             /* which of the texts that it knows each is */
+    int words[TEXTS + 1];       /* which of the texts that it knows each is */
     Fault fault;
-    Memory memory;
+    double values[SCALARS + 1]; /* of all types, by value reference */
+    Memory memory;              /* queues last */
+    double settings[FAULT_SETTINGS][FAULT_VALUES]; /* of the fault */
+    char texts[TEXTS + 1][TEXT_SIZE]; /* inputs of text */
 } State;
 
 typedef struct {
+    int is_wrong; /* there is an error */
     State state;
     fmi2CallbackLogger log;
     fmi2ComponentEnvironment environment;
     char name[256];
-    char error[ERROR_SIZE]; /* of the call that runs; empty: none */
+    char error[ERROR_SIZE]; /* of the call that runs */
     char shown[8][32];      /* numbers for a message */
     int shown_count;
     Surroundings met; /* of a plant in waves, current or wind, from its host */
 } Instance;
+
+#if !defined(TOUCHED) /* bytes of the memory that most steps touch */
+#define TOUCHED sizeof(Memory)
+#endif
+#define TOUCHED_OF_INSTANCE (offsetof(Instance, state.memory) + TOUCHED)
 
 /* What a component does: these are in plant.c, or written from its Python. */
 void model_start(Instance *self, double t);

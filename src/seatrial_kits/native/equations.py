@@ -24,15 +24,16 @@ extern const int model_x[], model_x_start[], model_u[], model_p[], model_y[];
 typedef struct {{
     double x[STATES + 1];
 #if AROUND
+    int among;                 /* whether anything surrounds it in this run */
     double around[AROUND];     /* at the end of the last step */
     double before[STATES + 1]; /* the states before that step */
     double met[4][AROUND];     /* evaluations of what surrounds the plant */
     double span;               /* the step, s, */
     long long count;           /* its sub-steps, */
     long long steps, done;     /* steps between the last two evaluations, and those taken */
-    int among;                 /* whether anything surrounds it in this run */
 #endif
 }} Memory;
+#define TOUCHED ((STATES + 2) * sizeof(double)) /* more among waves, current and wind alone */
 
 {functions}
 """

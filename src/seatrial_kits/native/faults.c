@@ -30,7 +30,8 @@ static int numbers(const char *text, size_t length, double values[FAULT_VALUES])
     }
 }
 
-static int read_setting(Fault *fault, const char *part, size_t length, int needed) {
+static int read_setting(State *state, const char *part, size_t length, int needed) {
+    Fault *fault = &state->fault;
     const char *const equals = memchr(part, '=', length);
     if (!equals) return 0;
     const size_t key = (size_t)(equals - part), rest = length - key - 1;
@@ -51,35 +52,35 @@ static int read_setting(Fault *fault, const char *part, size_t length, int neede
         const int setting = number_of(fault_settings, FAULT_SETTINGS, part, key);
         if (setting < 0 || setting != needed) return 0;
         fault->counts[setting] = count;
-        memcpy(fault->settings[setting], values, sizeof values);
+        memcpy(state->settings[setting], values, sizeof values);
     }
     return 1;
 }
 
-static int read_fault(Fault *fault, const char *text) {
+/* Return the number of a fault, -1 for a text that is none. */
+static int read_fault(State *state, const char *text) {
+    Fault *fault = &state->fault;
     size_t length = strcspn(text, " ");
     const int what = number_of(fault_names, FAULT_NAMES, text, length);
     memset(fault, 0, sizeof *fault);
-    fault->what = FAULT_NAMES; /* a text that is none of them */
-    if (what < 0 || (text[length] != '\0') != (what >= FAULT_PLAIN)) return 0;
+    if (what < 0 || (text[length] != '\0') != (what >= FAULT_PLAIN)) return -1;
     const int needed = what >= FAULT_PLAIN ? fault_needs[what - FAULT_PLAIN] : -1;
     while (text[length] != '\0') {
         text += length + 1;
         length = strcspn(text, " ");
-        if (!read_setting(fault, text, length, needed)) return 0;
+        if (!read_setting(state, text, length, needed)) return -1;
     }
     const int is_whole = needed < 0 || (fault->of > 0 && fault->counts[needed] > 0);
-    if (!is_whole || (needed == 3 && fault->counts[needed] != 5)) return 0;
-    fault->what = what;
-    return 1;
+    return is_whole && (needed != 3 || fault->counts[needed] == 5) ? what : -1;
 }
 
 void model_text(Instance *self, int text) {
-    if (text == FAULT_TEXT) self->state.fault.bad = !read_fault(&self->state.fault, self->state.texts[text]);
+    State *state = &self->state;
+    if (text == FAULT_TEXT) state->fault.number = read_fault(state, state->texts[text]);
 }
 
 int present_fault(Instance *self) {
-    if (!self->state.fault.bad) return self->state.fault.what;
+    if (self->state.fault.number >= 0) return self->state.fault.number;
     fail(self, "%s.fault: '%s' is no fault that it can have", self->name, self->state.texts[FAULT_TEXT]);
     return 0;
 }

@@ -21,13 +21,13 @@
 static void report(Instance *self) {
     if (self->log)
         self->log(self->environment, self->name, fmi2Error, "logStatusError", "%s", self->error);
-    self->error[0] = '\0';
-    self->shown_count = 0;
+    self->is_wrong = self->shown_count = 0;
 }
 
 void fail(Instance *self, const char *format, ...) {
     va_list arguments;
-    if (self->error[0]) return; /* what follows from the first error says nothing new */
+    if (self->is_wrong) return; /* what follows from the first error says nothing new */
+    self->is_wrong = 1;
     va_start(arguments, format);
     vsnprintf(self->error, ERROR_SIZE, format, arguments);
     va_end(arguments);
@@ -100,7 +100,7 @@ static int are_finite(Instance *self) {
 
 /* Say what went wrong, if anything did. */
 static int is_well(Instance *self) {
-    if (!self->error[0]) return 1;
+    if (!self->is_wrong) return 1;
     report(self);
     return 0;
 }

@@ -38,7 +38,9 @@ class Translation:
         memory = "\n".join(f"    {field}" for field in self.unit.memory())
         faults = self._fault_sizes() if isinstance(self.example, Fallible) else ""
         version = f"#define PYTHON {sys.version_info[0]}{sys.version_info[1]:02}\n"
-        return f"{version}\ntypedef struct {{\n{memory or '    int none;'}\n}} Memory;\n\n{faults}"
+        queues = [f"#define TOUCHED offsetof(Memory, {n}_e[4])\n" for n in self.unit.queues][:1]
+        whole = f"typedef struct {{\n{memory or '    int none;'}\n}} Memory;\n{''.join(queues)}"
+        return f"{version}\n{whole}\n{faults}"
 
     def model(self) -> str:
         """Return ``model.c``."""

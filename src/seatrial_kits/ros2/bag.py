@@ -12,18 +12,19 @@ class Bag:
     """A ROS 2 bag, MCAP inside, in the folder ``path``; times are those of the stamps, ns."""
 
     def __init__(self, path: Path) -> None:
-        from rosbags.rosbag2 import StoragePlugin, Writer
+        from rosbags.rosbag2 import CompressionFormat, CompressionMode, StoragePlugin, Writer
 
         self._writer = Writer(path, version=9, storage_plugin=StoragePlugin.MCAP)
+        self._writer.set_compression(CompressionMode.STORAGE, CompressionFormat.ZSTD)
         self._writer.open()
         self._connections: dict[str, Any] = {}
 
-    def write(self, topic: str, kind: str, message: Any, now_ns: int) -> None:
-        """Write a message of rosbags' class for the kind."""
-        store = type_store()
+    def write(self, topic: str, kind: str, data: bytes, now_ns: int) -> None:
+        """Write a message of the kind, as bytes (`packing`)."""
         if topic not in self._connections:
-            self._connections[topic] = self._writer.add_connection(topic, kind, typestore=store)
-        data = store.serialize_cdr(message, kind)
+            self._connections[topic] = self._writer.add_connection(
+                topic, kind, typestore=type_store()
+            )
         self._writer.write(self._connections[topic], now_ns, data)
 
     def close(self) -> None:

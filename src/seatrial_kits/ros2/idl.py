@@ -1,7 +1,6 @@
 """Types of the package cyclonedds, made at run time from the definitions of messages.
 
-DDS gets names and fields; samples are serialised by rosbags, as plain CDR, by code that it
-generates for each type.
+DDS gets names and fields. Samples are written as bytes (`packing`), and read by rosbags.
 """
 
 from __future__ import annotations
@@ -20,9 +19,10 @@ _BASES = {
 
 @cache
 def sample_type(kind: str) -> Any:
-    """Return the class of a topic's samples; each has the ``message`` of rosbags.
+    """Return the class of a topic's samples.
 
-    A sample whose bytes are no such message has the message None.
+    One that is written has the bytes of its message, plain CDR; one that is read the ``message``
+    of rosbags, None where its bytes are no such message.
     """
     store, made = type_store(), _struct(kind)
 
@@ -30,7 +30,8 @@ def sample_type(kind: str) -> Any:
         self.message = message
 
     def serialize(self: Any, **_: Any) -> bytes:
-        return bytes(store.serialize_cdr(self.message, kind))
+        written: bytes = self.message
+        return written
 
     def deserialize(cls: Any, data: bytes, /, **_: Any) -> Any:
         try:

@@ -1,7 +1,8 @@
 """Definitions that the stores of rosbags lack, by name: fields alone, of a service two parts.
 
-simulation_interfaces 1.x (Apache-2.0, https://github.com/ros-simulation/simulation_interfaces) and
-rcl_interfaces (Apache-2.0). A module, and no files: FMUs take modules along.
+simulation_interfaces 1.x (Apache-2.0, https://github.com/ros-simulation/simulation_interfaces),
+ros_gz_interfaces (Apache-2.0, https://github.com/gazebosim/ros_gz) and rcl_interfaces (Apache-2.0).
+A module, and no files: FMUs take modules along.
 """
 
 from __future__ import annotations
@@ -13,6 +14,13 @@ INTERFACES: Mapping[str, str] = {
 Parameter[] parameters
 ---
 SetParametersResult[] results
+""",
+    "ros_gz_interfaces/msg/Float32Array": """\
+float32[] data
+""",
+    "ros_gz_interfaces/msg/ParamVec": """\
+std_msgs/Header header
+rcl_interfaces/Parameter[] params
 """,
     "simulation_interfaces/msg/Bounds": """\
 uint8 type
@@ -33,6 +41,10 @@ geometry_msgs/Pose pose
 geometry_msgs/Twist twist
 geometry_msgs/Accel acceleration
 """,
+    "simulation_interfaces/msg/Resource": """\
+string uri
+string resource_string
+""",
     "simulation_interfaces/msg/Result": """\
 uint8 result
 string error_message
@@ -45,9 +57,39 @@ uint16[] features
 string[] spawn_formats
 string custom_info
 """,
+    "simulation_interfaces/msg/Spawnable": """\
+string uri
+string description
+Bounds spawn_bounds
+""",
     "simulation_interfaces/msg/TagsFilter": """\
 string[] tags
 uint8 filter_mode
+""",
+    "simulation_interfaces/msg/WorldResource": """\
+string name
+Resource world_resource
+string description
+string[] tags
+""",
+    "simulation_interfaces/srv/DeleteEntity": """\
+string entity
+---
+Result result
+""",
+    "simulation_interfaces/srv/GetAvailableWorlds": """\
+string[] additional_sources
+TagsFilter filter
+bool offline_only
+bool continue_on_error
+---
+Result result
+WorldResource[] worlds
+""",
+    "simulation_interfaces/srv/GetCurrentWorld": """\
+---
+Result result
+WorldResource world
 """,
     "simulation_interfaces/srv/GetEntities": """\
 EntityFilters filters
@@ -77,6 +119,21 @@ Result result
 ---
 SimulatorFeatures features
 """,
+    "simulation_interfaces/srv/GetSpawnables": """\
+string[] sources
+---
+Result result
+Spawnable[] spawnables
+""",
+    "simulation_interfaces/srv/LoadWorld": """\
+string uri
+string resource_string
+bool fail_on_unsupported_element
+bool ignore_missing_or_unsupported_assets
+---
+Result result
+WorldResource world
+""",
     "simulation_interfaces/srv/ResetSimulation": """\
 uint8 scope
 ---
@@ -92,6 +149,17 @@ Result result
 SimulationState state
 ---
 Result result
+""",
+    "simulation_interfaces/srv/SpawnEntity": """\
+string name
+bool allow_renaming
+string uri
+string resource_string
+string entity_namespace
+geometry_msgs/PoseStamped initial_pose
+---
+Result result
+string entity_name
 """,
     "simulation_interfaces/srv/StepSimulation": """\
 uint64 steps 1

@@ -1,4 +1,4 @@
-"""Endpoints of other nodes that cannot be matched: another type, or a quality that is not offered.
+"""Endpoints of other nodes that do not fit: another type, a quality that is not offered, a clock.
 
 DDS says nothing of them to anybody. Of each the link says once what it is, and what would match.
 """
@@ -11,10 +11,12 @@ from typing import Any, NamedTuple
 
 from .definitions import dds_name
 from .participant import Participant
+from .topics import PUBLISHED
 
 _EVERY_S = 0.5
 """Wall time between two looks."""
 _MOST = 200
+_CLOCK = PUBLISHED["clock"].name
 
 
 class Endpoint(NamedTuple):
@@ -25,6 +27,8 @@ class Endpoint(NamedTuple):
     """The type's name in DDS."""
     reliability: Any
     durability: Any
+    is_ours: bool
+    """Whether this process has it."""
 
 
 class Mismatches:
@@ -60,6 +64,8 @@ class Mismatches:
         for endpoint in self._known[0]:
             if endpoint.topic in read:
                 self._compare(endpoint, "a publisher", read[endpoint.topic])
+            if endpoint.topic == _CLOCK and not endpoint.is_ours and _CLOCK in written:
+                self._say(f"{_CLOCK}: another program publishes it too: nodes see two clocks")
         for endpoint in self._known[1]:
             if endpoint.topic in written:
                 kept = endpoint.topic in latched
@@ -95,4 +101,5 @@ def _taken(reader: Any) -> Iterator[Endpoint]:
     for each in reader.take(_MOST):
         if each.sample_info.valid_data:
             quality = each.qos[Policy.Reliability], each.qos[Policy.Durability]
-            yield Endpoint(each.topic_name.removeprefix("rt"), each.type_name, *quality)
+            ours = str(each.participant_key) in Participant.of_this_process
+            yield Endpoint(each.topic_name.removeprefix("rt"), each.type_name, *quality, ours)

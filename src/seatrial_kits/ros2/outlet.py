@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from operator import itemgetter
 from typing import Any
 
 from seatrial.model.component import NS
 
 from .bag import Bag
 from .description import urdf
-from .message import message
+from .packing import packed
 from .participant import Durability, Participant, Writer
 from .ports import Ros2Ports
 from .published import BASE, MEASURED, Fields, Here, leg, measured, odometry, places, transforms
@@ -33,10 +34,12 @@ class Outlet:
         self._writers: dict[str, Writer | None] = {}
         self._last: dict[str, tuple[Fields, int]] = {}
         self._truth_ns, self._leg = -(10**18), 0
-        self._measured: list[str] = []
+        self._measured: dict[str, Callable[[list[Any]], Any]] = {}
+        """By key, what takes the inputs of a topic out of all values of the link."""
+        self._inputs: dict[str, Any] = {}
         self.bag: Bag | None = None
         """Gets all that is written, if there is one."""
-        self._written: list[tuple[Writer, Any]] = []
+        self._written: list[tuple[Writer, bytes]] = []
         """What the last instant wrote."""
 
     def open(self, link: Ros2Ports, here: Here) -> None:
@@ -44,7 +47,7 @@ class Outlet:
 
         Nodes meet them before the first instant is written.
         """
-        self._measured = measured(link)
+        self._measured = {key: _inputs(link, key) for key in measured(link)}
         for key in ("clock", "tf", "odometry", *self._measured, *(["leg"] if link.leg else [])):
             self._writer(key)
         self.put("tf_static", places(link, here), here.now_ns)
@@ -61,16 +64,16 @@ class Outlet:
         """Write one message, if its topic is not off."""
         writer = self._writer(key)
         if writer is not None:
-            made = message(writer.kind, fields)
-            writer.write(made)
-            self._written.append((writer, made))
+            data = packed(writer.kind, fields)
+            writer.write(data)
+            self._written.append((writer, data))
             if self.bag is not None:
-                self.bag.write(writer.name, writer.kind, made, now_ns)
+                self.bag.write(writer.name, writer.kind, data, now_ns)
 
     def write_again(self) -> None:
         """Write once more what the last instant wrote."""
-        for writer, made in self._written:
-            writer.write(made)
+        for writer, data in self._written:
+            writer.write(data)
 
     @property
     def written(self) -> dict[str, str]:
@@ -93,7 +96,11 @@ class Outlet:
         if course is not None and self._leg != link.leg:
             self._leg = link.leg
             yield "leg", course
-        for key in self._measured:
+        for key, inputs_of in self._measured.items():
+            inputs = inputs_of(link.values)
+            if inputs == self._inputs.get(key) and not self._is_overdue(key, here):
+                continue
+            self._inputs[key] = inputs
             fields = MEASURED[key].make(link, here)
             if fields is not None and self._is_new(key, fields, here):
                 yield key, fields
@@ -105,12 +112,14 @@ class Outlet:
 
     def _is_new(self, key: str, fields: Fields, here: Here) -> bool:
         measured = {name: value for name, value in fields.items() if name != "header"}
-        last, at = self._last.get(key, ({}, 0))
-        overdue = here.now_ns - at >= _OVERDUE * here.instruments.period_ns(key)
-        if repr(measured) == repr(last) and not overdue:
+        if key in self._last and measured == self._last[key][0] and not self._is_overdue(key, here):
             return False
         self._last[key] = measured, here.now_ns
         return True
+
+    def _is_overdue(self, key: str, here: Here) -> bool:
+        at = self._last[key][1] if key in self._last else 0
+        return here.now_ns - at >= _OVERDUE * here.instruments.period_ns(key)
 
     def _writer(self, key: str) -> Writer | None:
         if key not in self._writers:
@@ -121,3 +130,8 @@ class Outlet:
                 None if name is None else self._participant.writer(name, topic.kind, durability)
             )
         return self._writers[key]
+
+
+def _inputs(link: Ros2Ports, key: str) -> Callable[[list[Any]], Any]:
+    ports = [link.ports[name] for name in (*MEASURED[key].ports, *MEASURED[key].beside)]
+    return itemgetter(*(port.offset + i for port in ports for i in range(port.size)))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Iterator
 from contextlib import contextmanager
-from typing import Any, Literal
+from typing import Any, ClassVar, Literal
 
 from seatrial.errors import InputError, unknown
 from seatrial.links.hardware import network_allowed
@@ -39,6 +39,9 @@ class Participant:
     cannot be, a middleware that is no DDS, and without the package cyclonedds.
     """
 
+    of_this_process: ClassVar[set[str]] = set()
+    """Identifiers of all participants that were made."""
+
     def __init__(self, domain: int) -> None:
         try:
             from cyclonedds.core import DDSException
@@ -51,6 +54,7 @@ class Participant:
         try:
             with _configured(), confined_sockets(reaches_others()):
                 self.dds = DomainParticipant(self.domain)
+            self.of_this_process.add(str(self.dds.guid))
         except DDSException as error:
             raise InputError(f"the ROS domain {self.domain} cannot be joined: {error}") from None
 
@@ -101,10 +105,10 @@ class Writer:
             participant.dds, participant.topic(topic, kind, prefix), _quality(durability, depth)
         )
 
-    def write(self, message: Any) -> None:
-        """Write a message of rosbags' class for the kind."""
+    def write(self, data: bytes) -> None:
+        """Write a message of the kind, as bytes (`packing`)."""
         try:
-            self.dds.write(self._sample(message))
+            self.dds.write(self._sample(data))
         except self._refused:
             self.dropped += 1
 

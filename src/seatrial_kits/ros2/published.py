@@ -290,21 +290,27 @@ class Measurement(NamedTuple):
 
     ports: tuple[str, ...]
     make: Maker
+    beside: tuple[str, ...] = ()
+    """All other inputs that its messages are made of."""
 
 
+_TILT = (
+    *("gyro_valid", "accelerometer", "imu_valid"),
+    *("roll_pitch", "heading", "heading_valid"),
+)
 MEASURED: Mapping[str, Measurement] = {
-    "imu": Measurement(("gyro",), imu),
-    "compass": Measurement(("heading",), compass),
-    "fix": Measurement(("position_n",), fix),
-    "velocity": Measurement(("velocity_n",), velocity),
-    "pressure": Measurement(("depth",), pressure),
-    "dvl": Measurement(("velocity_b",), dvl),
-    "water_speed": Measurement(("water_speed",), water_speed),
-    "water_depth": Measurement(("water_depth",), water_depth),
-    "wind": Measurement(("wind_speed",), wind),
+    "imu": Measurement(("gyro",), imu, _TILT),
+    "compass": Measurement(("heading",), compass, ("heading_valid", "roll_pitch")),
+    "fix": Measurement(("position_n",), fix, ("position_valid",)),
+    "velocity": Measurement(("velocity_n",), velocity, ("position_valid",)),
+    "pressure": Measurement(("depth",), pressure, ("depth_valid",)),
+    "dvl": Measurement(("velocity_b",), dvl, ("velocity_b_valid",)),
+    "water_speed": Measurement(("water_speed",), water_speed, ("water_speed_valid",)),
+    "water_depth": Measurement(("water_depth",), water_depth, ("water_depth_valid",)),
+    "wind": Measurement(("wind_speed",), wind, ("wind_angle", "wind_valid")),
     "leak": Measurement(("leaking",), leak),
     "temperature": Measurement(("water_temperature",), temperature),
-    "battery": Measurement(("voltage",), battery),
+    "battery": Measurement(("voltage",), battery, ("current", "charge")),
     "joints": Measurement(("joint", "motor_speed"), joints),
 }
 """Topics of measurements by key: written as they change, and at the period of their sensor."""

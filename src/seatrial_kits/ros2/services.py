@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from .definitions import service_parts
-from .message import message
+from .packing import packed
 from .participant import Participant, Writer
 
 _MOST = 10
@@ -47,6 +47,6 @@ class Service:
         }
 
         def answer(fields: Mapping[str, Any]) -> None:
-            self._writer.write(message(self._answered, {**header, **fields}))
+            self._writer.write(packed(self._answered, {**header, **fields}))
 
         return answer

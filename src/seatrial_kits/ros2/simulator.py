@@ -30,6 +30,10 @@ FEATURES = {
     "STEP_SIMULATION_MULTIPLE": 32,
 }
 _STATES = {0: "stopped", PLAYING: "playing", PAUSED: "paused", 3: "quitting"}
+_OF_THE_RIG = (
+    *("SpawnEntity", "DeleteEntity", "GetSpawnables"),
+    *("LoadWorld", "GetAvailableWorlds", "GetCurrentWorld"),
+)
 _MOST_STEPS = 1_000_000
 _POLL_S = 0.005
 
@@ -58,6 +62,7 @@ class Simulator:
             "GetEntitiesStates": self._entities_states,
             "SetEntityState": _unsupported("a vehicle moves by its equations alone"),
             "ResetSimulation": _unsupported("a run is begun again by seatrial run"),
+            **dict.fromkeys(_OF_THE_RIG, _unsupported("vehicles and world are those of the rig")),
         }
         self._services = [
             Service(participant, f"{name}/{_snake(kind)}", f"simulation_interfaces/srv/{kind}", act)

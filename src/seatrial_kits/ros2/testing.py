@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from seatrial.errors import InputError, unknown
 from seatrial.testing.waiting import Queue
 
-from .message import message
+from .packing import packed
 from .participant import Participant, Writer
 from .topics import ACTUATORS, COMMANDED, PUBLISHED
 
@@ -66,7 +66,7 @@ class Ros2Node:
         if topic not in self._writers:
             self._writers[topic] = self._participant.writer(self._full(topic), kind or _kind(topic))
         writer = self._writers[topic]
-        writer.write(message(writer.kind, fields))
+        writer.write(packed(writer.kind, fields))
 
     def _full(self, topic: str) -> str:
         return topic if topic.startswith("/") else f"{self._namespace}/{topic}"

@@ -56,7 +56,7 @@ def test_our_own_records_are_read(make_run, tmp_path):
     write_ros2_bag(run, tmp_path / "bag")
     for path, name in (
         (tmp_path / "boat.parquet", "red.position.x"),
-        (tmp_path / "bag", "/red/position/x.data"),
+        (tmp_path / "bag", "/red.position_x"),
     ):
         channel = read_log(path).channels[name]
         np.testing.assert_allclose(channel.values, run.signals["red.position.x"])

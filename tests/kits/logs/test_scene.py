@@ -163,7 +163,7 @@ def test_a_ros_2_bag_reads_back(run: Run, tmp_path: Path) -> None:
             message.log_time_ns, transform.transform.translation, transform.transform.rotation, seen
         )
     c, s = math.cos(ROLL), math.sin(ROLL)
-    for message, turn in zip(found["/boat/odometry"], seen, strict=True):
+    for message, turn in zip(found["/boat/odometry/ground_truth"], seen, strict=True):
         pose, twist = message.ros_msg.pose.pose, message.ros_msg.twist.twist
         assert_pose(message.log_time_ns, pose.position, pose.orientation, [turn])
         linear = [twist.linear.x, twist.linear.y, twist.linear.z]
@@ -171,13 +171,13 @@ def test_a_ros_2_bag_reads_back(run: Run, tmp_path: Path) -> None:
         assert linear == pytest.approx([RADIUS * RATE, CLIMB * s, CLIMB * c])
         assert angular == pytest.approx([0.0, -RATE * s, -RATE * c])
     inward = RADIUS * RATE**2
-    for message in found["/boat/imu"]:
+    for message in found["/boat/imu/data"]:
         read = message.ros_msg.linear_acceleration
         expected = [0.0, -inward * c + 9.80665 * s, inward * s + 9.80665 * c]
         assert [read.x, read.y, read.z] == pytest.approx(expected)
-    fix = found["/boat/fix"][0].ros_msg
+    fix = found["/boat/gnss/fix"][0].ros_msg
     assert (fix.header.frame_id, fix.altitude) == ("boat", pytest.approx(2.0))
-    down = [message.ros_msg.data for message in found["/boat/position/z"]]
+    down = [message.ros_msg.position_z for message in found["/boat"]]
     assert down == run.signals["boat.position.z"].tolist()
 
 

@@ -39,6 +39,11 @@ class Time(IdlStruct, typename="builtin_interfaces::msg::dds_::Time_"):
 
 
 @dataclass
+class Clock(IdlStruct, typename="rosgraph_msgs::msg::dds_::Clock_"):
+    clock: Time
+
+
+@dataclass
 class Header(IdlStruct, typename="std_msgs::msg::dds_::Header_"):
     stamp: Time
     frame_id: str
@@ -175,7 +180,7 @@ def square(node):
     writer = node.writer("/otter/cmd_vel_stamped", TwistStamped)
 
     def act(odometry, path):
-        error = towards(odometry, path)
+        error = towards(odometry, path) if path else 0.0
         speed = 1.5 * max(0.2, math.cos(error))
         twist = Twist(Vector3(x=speed), Vector3(z=0.8 * error))
         writer.write(TwistStamped(Header(odometry.header.stamp, "base_link"), twist))
@@ -189,7 +194,8 @@ def thrust(node):
     starboard = node.writer("/otter/thrusters/starboard/thrust", Float64)
 
     def act(odometry, path):
-        turn = 60.0 * towards(odometry, path) + 60.0 * -odometry.twist.twist.angular.z
+        error = towards(odometry, path) if path else 0.0  # the leg may come after an odometry
+        turn = 60.0 * error - 60.0 * odometry.twist.twist.angular.z
         port.write(Float64(60.0 - turn))
         starboard.write(Float64(60.0 + turn))
 

@@ -2,6 +2,9 @@
 
 import logging
 import math
+import os
+import subprocess
+import sys
 import time
 
 import pytest
@@ -157,6 +160,27 @@ def test_other_types_and_qualities_are_named(otter, node, caplog):
     assert "/otter/cmd_vel: a publisher is best effort" in caplog.text
     assert "/otter/odometry/ground_truth: a subscriber asks for transient local" in caplog.text
     assert len(kept) == 3
+
+
+def test_a_clock_from_elsewhere_is_named_and_simulated_time_goes_on(
+    otter, domain, tmp_path, caplog
+):
+    simulation = otter()
+    code = (
+        "import sys; from tests.kits.ros2.peer import Node, Clock, Time\n"
+        f"writer = Node({domain}).writer('/clock', Clock)\n"
+        "writer.write(Clock(Time(1_700_000_000, 0))); sys.stdin.read()"
+    )
+    environment = {**os.environ, "CYCLONEDDS_URI": LOOPBACK}
+    command = [sys.executable, "-c", code]
+    other = subprocess.Popen(command, stdin=subprocess.PIPE, env=environment)
+    until, before = time.monotonic() + 20.0, simulation.time
+    while "two clocks" not in caplog.text and time.monotonic() < until:
+        simulation.step(1)
+        time.sleep(0.05)
+    other.communicate()
+    assert caplog.text.count("/clock: another program publishes it too") == 1
+    assert before < simulation.time < 30.0
 
 
 @pytest.mark.slow

@@ -11,7 +11,7 @@ from seatrial import Simulation
 from seatrial.links.geodesy import Origin
 from seatrial_kits.ros2.component import Ros2
 from seatrial_kits.ros2.instruments import Instruments
-from seatrial_kits.ros2.message import message
+from seatrial_kits.ros2.packing import packed
 from seatrial_kits.ros2.participant import Participant
 from seatrial_kits.ros2.published import MEASURED, Here, measured
 from seatrial_kits.ros2.topics import COMMANDED, PUBLISHED, Names
@@ -41,7 +41,7 @@ class Ears:
 
     def steer(self, speed, turn):
         twist = {"linear": (speed, 0.0, 0.0), "angular": (0.0, 0.0, turn)}
-        self.writer.write(message("geometry_msgs/msg/Twist", twist))
+        self.writer.write(packed("geometry_msgs/msg/Twist", twist))
 
     def taken(self, key):
         return [s.message for s in self.readers[key].take(1000) if s.sample_info.valid_data]
@@ -191,8 +191,7 @@ def test_a_battery_that_discharges_has_a_negative_current(link):
     link.voltage, link.current, link.charge = 15.0, 4.0, 0.8
     found = MEASURED["battery"].make(link, here())
     assert (found["voltage"], found["current"], found["percentage"]) == (15.0, -4.0, 0.8)
-    made = message("sensor_msgs/msg/BatteryState", found)
-    assert math.isnan(made.capacity)
+    assert math.isnan(found["capacity"])
 
 
 def test_the_field_turns_with_the_heading_and_an_imu_without_attitude_says_so(link):
@@ -229,7 +228,7 @@ def test_topics_have_other_names_or_none_and_frames_a_prefix(ears, domain):
     reader = otter.participant.reader("/other/imu", "sensor_msgs/msg/Imu")
     left = otter.participant.writer("/left", "std_msgs/msg/Float64")
     otter.simulation.run("0.1 s")
-    left.write(message("std_msgs/msg/Float64", {"data": 60.0}))
+    left.write(packed("std_msgs/msg/Float64", {"data": 60.0}))
     otter.simulation.run("0.2 s")
     assert reader.take(1)[0].message.header.frame_id == "otter/imu_link"
     assert not otter.taken("odometry")
@@ -240,3 +239,20 @@ def test_simulated_time_begins_at_the_date(ears):
     otter = ears("otter", clock="date")
     otter.simulation.step(1)
     assert otter.taken("clock")[0].clock.sec == 1780272000  # 2026-06-01T00:00:00Z
+
+
+@pytest.mark.parametrize("key", MEASURED)
+def test_messages_are_made_of_the_inputs_that_are_looked_at_for_changes(key, link):
+    """An input that is not looked at would move, and no message would follow."""
+    read = set()
+
+    class Spied:
+        def __getattr__(self, name):
+            read.add(name)
+            return getattr(link, name)
+
+    for port in link.ports.values():  # all valid, and measured
+        if port.kind == "input" and port.type in (bool, float):
+            setattr(link, port.name, [1] * port.size if port.axes else 1)
+    MEASURED[key].make(Spied(), here())
+    assert read == {*MEASURED[key].ports, *MEASURED[key].beside}

@@ -10,7 +10,18 @@ from cyclonedds.idl.types import float64, int64, sequence, uint8, uint16, uint64
 
 from seatrial import Simulation
 
-from .peer import LOOPBACK, Header, Node, Pose, Twist, Vector3
+from .peer import (
+    LOOPBACK,
+    Header,
+    Node,
+    Point,
+    Pose,
+    PoseStamped,
+    Quaternion,
+    Time,
+    Twist,
+    Vector3,
+)
 
 PACKAGE = "simulation_interfaces"
 
@@ -94,6 +105,12 @@ SERVICES = {
         (PACKAGE, "SetSimulationState"), {"state": State}, {"result": Result}),
     "step_simulation": ((PACKAGE, "StepSimulation"), {"steps": uint64}, {"result": Result}),
     "reset_simulation": ((PACKAGE, "ResetSimulation"), {"scope": uint8}, {"result": Result}),
+    "spawn_entity": (
+        (PACKAGE, "SpawnEntity"),
+        {"name": str, "allow_renaming": bool, "uri": str, "resource_string": str,
+         "entity_namespace": str, "initial_pose": PoseStamped},
+        {"result": Result, "entity_name": str}),
+    "delete_entity": ((PACKAGE, "DeleteEntity"), {"entity": str}, {"result": Result}),
     "get_entity_state": (
         (PACKAGE, "GetEntityState"), {"entity": str}, {"result": Result, "state": EntityState}),
     "inject_fault": (
@@ -180,6 +197,12 @@ def test_the_standard_s_calls(running):
     reset = client.call("reset_simulation", 0)
     assert reset.result.result == 0
     assert "seatrial run" in reset.result.error_message
+    pose = Pose(Point(0.0, 0.0, 0.0), Quaternion(0.0, 0.0, 0.0, 1.0))
+    at = PoseStamped(Header(Time(0, 0), "map"), pose)
+    spawned = client.call("spawn_entity", "second", True, "otter", "", "second", at)
+    assert (spawned.result.result, spawned.entity_name) == (0, "")
+    assert spawned.result.error_message == "vehicles and world are those of the rig"
+    assert client.call("delete_entity", "otter").result.result == 0
     lost = client.call("get_entity_state", "oter")
     assert lost.result.result == 2
     assert "'otter'" in lost.result.error_message

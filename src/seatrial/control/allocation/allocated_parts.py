@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import ClassVar
 
 import numpy as np
 
@@ -11,8 +12,15 @@ from ...model.component import Parameter
 from ...physics.parts.lift import lift_slope
 from ...physics.parts.slots import COUNT, FOILS, PROPULSORS, FoilSlots, PropulsorSlots, read_kinds
 from ...physics.parts.steering import require_steering
-from .bounded import Array
-from .part_wrenches import AXES, capacities, given_alone, lift_wrench, read_axes, thrust_wrench
+from .part_wrenches import (
+    AXES,
+    Array,
+    capacities,
+    given_alone,
+    lift_wrench,
+    read_axes,
+    thrust_wrench,
+)
 
 TURNING = ("azimuth", "outboard", "jet")
 """Kinds of propulsors that turn, if their range lets them."""
@@ -22,6 +30,13 @@ _NO_THRUST = tuple(PropulsorSlots.ports["propulsor_thrust_1"].start)
 """Value of a thrust that nobody gave; the craft needs none where coefficients give it."""
 STEERING = ("fin", "linear-fin", "rudder")
 """Kinds of foils in the water."""
+PRIORITIES = (1.0, 1.0, 30.0, 27e3, 27e3, 900.0)
+"""Weights of the axes, each as a share of the largest force or moment there."""
+_BUILT_IN = {
+    "propulsor": "position axis thrust exponent fading_speed angle_limit turns_with",
+    "foil": "position roll area aspect_ratio lift angle_limit",
+}
+"""Parameters of parts that say what there is to give: native code has what follows from them."""
 
 
 class AllocatedParts(PropulsorSlots, FoilSlots):
@@ -30,6 +45,20 @@ class AllocatedParts(PropulsorSlots, FoilSlots):
     Share 1 of a propulsor is the larger of its thrusts ahead and astern, that of a foil its
     largest angle, per pascal of dynamic pressure.
     """
+
+    structural: ClassVar = [
+        f"{sort}_{name}_{number}"
+        for sort, names in _BUILT_IN.items()
+        for name in names.split()
+        for number in range(1, COUNT + 1)
+    ]
+    tabulated: ClassVar = {
+        "read_parts": (
+            *("_kinds", "_leaders", "_turning", "_fixed", "_helms", "_on_helm", "_foils"),
+            *("_ranges", "_first_angles", "_reaches", "_fading", "_exponents", "_most", "_rows"),
+            *("_columns", "_along", "_abeam"),
+        )
+    }
 
     axes = Parameter(
         "", "1", f"axes that are asked for, some of {', '.join(AXES)}", check=read_axes
@@ -53,23 +82,25 @@ class AllocatedParts(PropulsorSlots, FoilSlots):
         self._foil_kinds = read_kinds(self.foils, "foil", FOILS)
         self._foils = [n for n, kind in enumerate(self._foil_kinds) if kind in STEERING]
         self._check_linear_fins()
-        self._ranges = [list(ends) for ends in self.propulsor_angle_limit]
-        self._angles = [self._at_rest(number) for number in range(COUNT)]
+        self._ranges = [tuple(ends) for ends in self.propulsor_angle_limit]
+        self._first_angles = [self._at_rest(number) for number in range(COUNT)]
         self._reaches = [_reach(*thrust) for thrust in thrusts]
+        self._fading = [
+            speed if kind == "tunnel" else 0.0
+            for kind, speed in zip(self._kinds, self.propulsor_fading_speed, strict=False)
+        ]
         by_speed = [kind in BY_SPEED for kind in self._kinds]
         exponents = zip(by_speed, self.propulsor_exponent, strict=False)
         self._exponents = [2.0 if squared else exponent for squared, exponent in exponents]
-        self._rows = read_axes(self.axes)
-        wrenches = [
-            _side_by_side([self._thrust(n, self._angles[n]) for n in self._fixed]),
-            _side_by_side([self._lift(number) for number in self._foils]),
-            _side_by_side([self._thrust(n, 0.0) for n in self._turning]),
-            _side_by_side([self._thrust(n, 0.5 * math.pi) for n in self._turning]),
-        ]
-        self._check_axes(np.hstack(wrenches))
-        # Lists: a state compares as a whole.
-        asked = [columns[self._rows].tolist() for columns in wrenches]
-        self._columns, self._tail, self._along, self._abeam = asked
+        self._most = list(self.foil_angle_limit)
+        self._rows = sorted(read_axes(self.axes), key=lambda row: -PRIORITIES[row])
+        fixed = [self._thrust(n, self._first_angles[n]) for n in self._fixed]
+        fixed += [self._lift(number) for number in self._foils]
+        along = [self._thrust(n, 0.0) for n in self._turning]
+        abeam = [self._thrust(n, 0.5 * math.pi) for n in self._turning]
+        self._check_axes([*fixed, *along, *abeam])
+        asked = [[each[self._rows].tolist() for each in own] for own in (fixed, along, abeam)]
+        self._columns, self._along, self._abeam = asked
 
     def order_of(self, number: int, share: float) -> float:
         """Return the order that gives a share of the larger thrust of a propulsor."""
@@ -112,13 +143,15 @@ class AllocatedParts(PropulsorSlots, FoilSlots):
                     "linear-fin: more than 0 is needed"
                 )
 
-    def _check_axes(self, columns: Array) -> None:
+    def _check_axes(self, wrenches: list[Array]) -> None:
         """Raise InputError unless the parts give each of ``axes`` without the others."""
-        if columns.size and not self._rows:
+        columns = np.stack(wrenches, axis=1) if wrenches else np.zeros((len(AXES), 0))
+        rows = read_axes(self.axes)
+        if columns.size and not rows:
             raise InputError(f"{self.name}.axes names none: give some of {', '.join(AXES)}")
         most = capacities(columns)
         there = np.flatnonzero(most > 1e-9 * most.max())
-        for row, gives in zip(self._rows, given_alone(columns, self._rows), strict=True):
+        for row, gives in zip(rows, given_alone(columns, rows), strict=True):
             if not gives:
                 how = "only together with another one" if row in there else "not at all"
                 raise InputError(
@@ -160,8 +193,3 @@ def _reach(ahead: float, astern: float) -> tuple[float, float]:
     """Return the largest thrusts astern and ahead as shares of the larger one."""
     most = max(ahead, astern)
     return (astern / most, ahead / most) if most > 0.0 else (0.0, 0.0)
-
-
-def _side_by_side(wrenches: list[Array]) -> Array:
-    """Return wrenches as columns, six rows of none if there is none."""
-    return np.stack(wrenches, axis=1) if wrenches else np.zeros((len(AXES), 0))

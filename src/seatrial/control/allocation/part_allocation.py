@@ -5,18 +5,13 @@ from __future__ import annotations
 import math
 from typing import ClassVar
 
-import numpy as np
-
 from ...model.component import Input, Output, Parameter, Terminal, terminal
 from ...model.sampled import Sampled
 from ...physics.parts.slots import COUNT
-from .allocated_parts import AllocatedParts
+from .allocated_parts import PRIORITIES, AllocatedParts
 from .extended_thrust import Demand, Shares, shares_of
-from .part_wrenches import capacities
 from .steering import Turning, angles_for, as_one, with_directions
 
-_PRIORITIES = np.array([1.0, 1.0, 30.0, 27e3, 27e3, 900.0])
-"""Weights of the axes, each as a share of the largest force or moment there."""
 _PROPULSORS = tuple(f"p{number}" for number in range(1, COUNT + 1))
 _FOILS = tuple(f"f{number}" for number in range(1, COUNT + 1))
 _DEMAND = ("surge", "sway", "heave", "roll_moment", "pitch_moment", "yaw_moment")
@@ -128,11 +123,7 @@ class PartAllocation(AllocatedParts, Sampled):
     def reset(self, t: float) -> None:
         """Work out what each part gives; raises InputError as the class says."""
         self.read_parts()
-        self._rates = list(self.propulsor_angle_rate)
-        self._fading = [
-            speed if kind == "tunnel" else 0.0
-            for kind, speed in zip(self._kinds, self.propulsor_fading_speed, strict=False)
-        ]
+        self._angles = list(self._first_angles)
 
     def sample(self, t: float, k: int) -> None:
         """Allocate."""
@@ -143,9 +134,9 @@ class PartAllocation(AllocatedParts, Sampled):
         now = [self._angles[helm] for helm in self._helms]
         on_helms = [as_one([turning[i] for i in places]) for places in self._on_helm]
         goals = angles_for(demand, others, on_helms, now, self.idle_share)
-        angles = self._steered(dict(zip(self._helms, goals, strict=True)))
+        angles = self._steered(goals)
         reached = [angles[number] for number in self._turning]
-        self._order(shares_of(demand, with_directions(others, turning, reached)).tolist())
+        self._order(shares_of(demand, with_directions(others, turning, reached)))
         self.propulsor_angle = angles
 
     def update(self, t: float, k: int) -> None:
@@ -154,57 +145,62 @@ class PartAllocation(AllocatedParts, Sampled):
 
     def _demanded(self, others: Shares) -> Demand:
         """Return what is asked for, and the weights for what there is to give it."""
-        wanted = np.array([getattr(self, name) for name in _DEMAND])[self._rows]
-        most = capacities(np.hstack([others.columns, self._along, self._abeam]))
-        given = np.divide(1.0, most, out=np.zeros_like(most), where=most > 0.0)
-        return Demand(wanted, _PRIORITIES[self._rows] * given)
+        demand = [getattr(self, name) for name in _DEMAND]
+        most = [0.0 for _ in self._rows]
+        for column in (*others.columns, *self._along, *self._abeam):
+            most = [size + abs(one) for size, one in zip(most, column, strict=True)]
+        first = [PRIORITIES[row] for row in self._rows]
+        return Demand(
+            [demand[row] for row in self._rows],
+            [p / size if size > 0.0 else 0.0 for p, size in zip(first, most, strict=True)],
+        )
 
     def _others(self) -> Shares:
         """Return the parts that do not turn, as they are at this speed."""
         ahead = self.speed if self.speed >= self.steerage_speed else 0.0
         pressure = 0.5 * self.density * ahead**2
-        effects = np.array([self._effect(number) for number in self._fixed])
-        thrusts, lifts = np.array(self._columns) * effects, np.array(self._tail) * pressure
-        reaches = [self._reaches[number] for number in self._fixed]
-        reaches += [(1.0, 1.0)] * len(self._foils)
-        astern, most = (np.array([reach[side] for reach in reaches]) for side in (0, 1))
-        return Shares(np.hstack([thrusts, lifts]), -astern, most)
+        effects = [
+            *[self._effect(number) for number in self._fixed],
+            *[pressure for _ in self._foils],
+        ]
+        columns = [
+            [effect * one for one in column]
+            for effect, column in zip(effects, self._columns, strict=True)
+        ]
+        reaches = [*[self._reaches[n] for n in self._fixed], *[(1.0, 1.0) for _ in self._foils]]
+        return Shares(columns, [-astern for astern, _ in reaches], [most for _, most in reaches])
 
     def _those_that_turn(self) -> list[Turning]:
-        along, abeam = np.array(self._along), np.array(self._abeam)
-        found = []
-        for i, number in enumerate(self._turning):
-            least, most = self._ranges[self._leaders[number]]
-            astern, ahead = self._reaches[number]
-            found.append(Turning(along[:, i], abeam[:, i], least, most, astern, ahead))
-        return found
+        return [
+            Turning(along, abeam, *self._ranges[self._leaders[number]], *self._reaches[number])
+            for number, along, abeam in zip(self._turning, self._along, self._abeam, strict=True)
+        ]
 
     def _effect(self, number: int) -> float:
         """Return the share of a propulsor's thrust that the speed leaves."""
         gone = self._fading[number]
         return 1.0 - min(1.0, (self.speed / gone) ** 2) if gone > 0.0 else 1.0
 
-    def _steered(self, goals: dict[int, float]) -> list[float]:
+    def _steered(self, goals: list[float]) -> list[float]:
         """Return the angles of all propulsors after the move of this instant to those of helms."""
-        moved = {helm: self._moved(helm, goal) for helm, goal in goals.items()}
         angles = list(self._angles)
-        for number, helm in enumerate(self._leaders):
-            angles[number] = moved.get(helm, angles[number])
+        rates = self.propulsor_angle_rate
+        for helm, goal in zip(self._helms, goals, strict=True):
+            most = rates[helm] * self.period if rates[helm] > 0.0 else math.inf
+            moved = angles[helm] + min(max(goal - angles[helm], -most), most)
+            for number, leader in enumerate(self._leaders):
+                if leader == helm:
+                    angles[number] = moved
         return angles
-
-    def _moved(self, number: int, goal: float) -> float:
-        """Return the angle of a propulsor after the move of this instant."""
-        now, rate = self._angles[number], self._rates[number]
-        most = rate * self.period if rate > 0.0 else math.inf
-        return float(now + min(max(goal - now, -most), most))
 
     def _order(self, shares: list[float]) -> None:
         """Publish orders and angles of shares: of fixed propulsors, foils, those that turn."""
         fixed, foils = len(self._fixed), len(self._fixed) + len(self._foils)
-        orders, angles, limits = [0.0] * COUNT, [0.0] * COUNT, self.foil_angle_limit
+        orders = [0.0] * COUNT
+        angles = [0.0] * COUNT
         numbers = [*self._fixed, *self._turning]
-        for number, share in zip(numbers, shares[:fixed] + shares[foils:], strict=True):
+        for number, share in zip(numbers, [*shares[:fixed], *shares[foils:]], strict=True):
             orders[number] = self.order_of(number, share)
         for number, share in zip(self._foils, shares[fixed:foils], strict=True):
-            angles[number] = share * limits[number]
+            angles[number] = share * self._most[number]
         self.propulsor_order, self.foil_angle = orders, angles

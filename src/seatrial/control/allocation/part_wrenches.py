@@ -6,9 +6,11 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
+import numpy.typing as npt
 
 from ...errors import InputError
-from .bounded import Array
+
+Array = npt.NDArray[np.float64]
 
 AXES = ("surge", "sway", "heave", "roll", "pitch", "yaw")
 """Rows of a wrench in body axes: X, Y, Z in N, K, M, N in N.m."""

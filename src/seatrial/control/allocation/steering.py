@@ -6,10 +6,8 @@ import math
 from collections.abc import Sequence
 from typing import NamedTuple
 
-import numpy as np
-
-from .bounded import Array
-from .extended_thrust import Demand, Shares, components
+from .bounded import Column
+from .extended_thrust import Demand, Shares, Vector, components, turned
 
 _STAY = 0.1
 """Share of a thrust that a turn through the whole range must gain."""
@@ -18,9 +16,9 @@ _STAY = 0.1
 class Turning(NamedTuple):
     """A propulsor that turns. rad, shares of its largest thrust."""
 
-    along: Array
+    along: Column
     """Wrench at share 1 in its axis, and in the next one 90 deg from it."""
-    abeam: Array
+    abeam: Column
     least: float
     most: float
     """Ends of the range of its angle."""
@@ -32,8 +30,8 @@ class Turning(NamedTuple):
 def as_one(parts: Sequence[Turning]) -> Turning:
     """Return propulsors on one steering angle as one that turns, with the same share for each."""
     return parts[0]._replace(
-        along=np.sum([part.along for part in parts], axis=0),
-        abeam=np.sum([part.abeam for part in parts], axis=0),
+        along=[math.fsum(row) for row in zip(*(part.along for part in parts), strict=True)],
+        abeam=[math.fsum(row) for row in zip(*(part.abeam for part in parts), strict=True)],
         astern=min(part.astern for part in parts),
         ahead=min(part.ahead for part in parts),
     )
@@ -52,7 +50,7 @@ def fitting(direction: float, least: float, most: float, now: float) -> float | 
     return angle if least <= angle <= most else None
 
 
-def angle_for(part: Turning, force: Array, now: float) -> float:
+def angle_for(part: Turning, force: Column, now: float) -> float:
     """Return the angle that gives a force (a, b), shares along axis and abeam, from ``now``, rad.
 
     Of the angle that gives it ahead and the one that gives it astern, where the thrust astern is
@@ -68,7 +66,8 @@ def angle_for(part: Turning, force: Array, now: float) -> float:
         return ahead if abs(ahead - now) <= abs(astern - now) else astern
     if astern is not None and part.astern > 0.0:
         return astern
-    return max((part.least, part.most), key=lambda end: _worth(part, end, direction, now))
+    least, most = (_worth(part, end, direction, now) for end in (part.least, part.most))
+    return part.most if most > least else part.least
 
 
 def _worth(part: Turning, end: float, direction: float, now: float) -> float:
@@ -79,7 +78,7 @@ def _worth(part: Turning, end: float, direction: float, now: float) -> float:
 
 
 def angles_for(
-    demand: Demand, others: Shares, parts: list[Turning], now: list[float], idle: float
+    demand: Demand, others: Shares, parts: Sequence[Turning], now: Sequence[float], idle: float
 ) -> list[float]:
     """Return the angles with which propulsors that turn, and others, give a demand, rad.
 
@@ -88,48 +87,61 @@ def angles_for(
     if it goes astern, else with it as a part that has a direction, an end of its range. A
     propulsor with less than the share ``idle`` to give keeps its angle.
     """
-    angles, circles, free = list(now), [1.0] * len(parts), list(range(len(parts)))
-    while free:
-        start = np.array([angles[k] for k in free])
-        along = np.stack([circles[k] * parts[k].along for k in free], axis=1)
-        abeam = np.stack([circles[k] * parts[k].abeam for k in free], axis=1)
-        found = components(demand, others, along, abeam, start)
-        forces = {k: circles[k] * force for k, force in zip(free, found, strict=True)}
-        used = [k for k in free if math.hypot(forces[k][0], forces[k][1]) >= idle]
-        for k in free:
-            angles[k] = angle_for(parts[k], forces[k], now[k]) if k in used else now[k]
-        short = [k for k in used if not _gives(parts[k], forces[k], angles[k])]
-        if not short:
-            break
-        limited = []
-        for k in short:
-            astern = forces[k] @ _direction(angles[k]) < 0.0
-            if astern and circles[k] > parts[k].astern > 0.0:
-                circles[k] = parts[k].astern
-            else:
-                limited.append(k)
-        others = with_directions(others, [parts[k] for k in limited], [angles[k] for k in limited])
-        free = [k for k in free if k not in limited]
-    return angles
+    steered = [_Steered(angle, 1.0, turns=True, is_given=False) for angle in now]
+    while not all(one.is_given for one in steered):  # each is narrowed twice at most
+        vectors = [_vector(part, one) for part, one in zip(parts, steered, strict=True)]
+        found = components(demand, others, vectors)
+        steered = [
+            _narrowed(part, one, force, angle, idle)
+            for part, one, force, angle in zip(parts, steered, found, now, strict=True)
+        ]
+    return [one.angle for one in steered]
 
 
-def _direction(angle: float) -> Array:
-    return np.array([math.cos(angle), math.sin(angle)])
+class _Steered(NamedTuple):
+    """How a propulsor stands in the search: its angle, and whether it gives its force there."""
+
+    angle: float
+    circle: float
+    """Largest share in any direction."""
+    turns: bool
+    is_given: bool
 
 
-def _gives(part: Turning, force: Array, angle: float) -> bool:
-    """Return whether a propulsor gives a force at an angle, within its largest shares."""
-    ahead, aside = force @ _direction(angle), force @ _direction(angle + 0.5 * math.pi)
-    return bool(abs(aside) < 1e-9 and -part.astern - 1e-9 < ahead < part.ahead + 1e-9)
+def _vector(part: Turning, one: _Steered) -> Vector:
+    """Return a propulsor for `components`: within its circle, or at its angle."""
+    size = one.circle if one.turns else 1.0
+    along, abeam = ([size * own for own in column] for column in (part.along, part.abeam))
+    return Vector(along, abeam, one.angle, one.turns, -part.astern, part.ahead)
 
 
-def with_directions(others: Shares, parts: list[Turning], angles: list[float]) -> Shares:
+def _narrowed(part: Turning, one: _Steered, force: Column, now: float, idle: float) -> _Steered:
+    """Return a propulsor at the angle for its force, from ``now``, within what it can give."""
+    if not one.turns:
+        return one._replace(is_given=True)
+    force = (one.circle * force[0], one.circle * force[1])
+    if math.hypot(force[0], force[1]) < idle:
+        return one._replace(angle=now, is_given=True)
+    angle = angle_for(part, force, now)
+    ahead, aside = _by_direction(force, angle)
+    if abs(aside) < 1e-9 and -part.astern - 1e-9 < ahead < part.ahead + 1e-9:
+        return one._replace(angle=angle, is_given=True)
+    if ahead < 0.0 and one.circle > part.astern > 0.0:
+        return _Steered(angle, part.astern, turns=True, is_given=False)
+    return _Steered(angle, one.circle, turns=False, is_given=False)
+
+
+def _by_direction(force: Column, angle: float) -> tuple[float, float]:
+    """Return the components of a force (a, b) in a direction and 90 deg from it."""
+    c, s = math.cos(angle), math.sin(angle)
+    return force[0] * c + force[1] * s, force[1] * c - force[0] * s
+
+
+def with_directions(others: Shares, parts: Sequence[Turning], angles: Sequence[float]) -> Shares:
     """Return ``others`` and propulsors that turn, each at its angle, as parts with a direction."""
-    columns = [
-        p.along * math.cos(a) + p.abeam * math.sin(a) for p, a in zip(parts, angles, strict=True)
-    ]
+    columns = [turned(p.along, p.abeam, a) for p, a in zip(parts, angles, strict=True)]
     return Shares(
-        np.column_stack([others.columns, *columns]),
-        np.concatenate([others.low, [-p.astern for p in parts]]),
-        np.concatenate([others.high, [p.ahead for p in parts]]),
+        [*others.columns, *columns],
+        [*others.low, *[-p.astern for p in parts]],
+        [*others.high, *[p.ahead for p in parts]],
     )

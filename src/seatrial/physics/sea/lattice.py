@@ -14,14 +14,15 @@ from .numbers import GRAVITY, Array, require_positive
 PLACE, PHASE, DIRECTION, AMPLITUDE = range(4)
 """Streams of draws of a band."""
 
-NARROW = math.pi / 3600.0
-"""Width of bands, rad/s, half of the resolution of an hour: with drawn amplitudes hours then differ
-as those of a Gaussian sea, within a tenth."""
+PER_OCTAVE = 12
+"""Bands to the octave of a sea whose hours differ, where it has little energy."""
+DENSE = 0.1
+"""Share of the largest density of a band above which such a sea has much energy."""
+WAVES, STRATA = 60, 5
+"""Waves there, all of one energy, and parts of that energy in which they are drawn."""
 
 _OFFSET = 2**20
 """Added to a band's index, so that it counts from above 0."""
-_MOST_PARTS = 2**11
-"""Of a band, in the index of its parts."""
 
 
 def bands(low: float, high: float, per_octave: int) -> range:
@@ -39,22 +40,6 @@ def bands(low: float, high: float, per_octave: int) -> range:
 def edges(indices: range, per_octave: int) -> Array:
     """Return the edges of the bands, rad/s: one more than there are bands."""
     return np.exp2(np.arange(indices.start, indices.stop + 1) / per_octave)
-
-
-def divided(indices: range, per_octave: int, is_high: Array) -> tuple[list[int], Array]:
-    """Return indices and edges of the bands, those that ``is_high`` names in narrow parts.
-
-    Parts are narrower than `NARROW`, and depend on the place of the band alone.
-    """
-    ends = edges(indices, per_octave)
-    keys: list[int] = []
-    found: list[Array] = []
-    for j, low, high, parts in zip(indices, ends[:-1], ends[1:], is_high, strict=True):
-        wanted = math.floor((high - low) / NARROW) + 1 if parts else 1
-        count = min(wanted, _MOST_PARTS)
-        keys += [_MOST_PARTS * j + i for i in range(count)]
-        found.append(low + (high - low) * np.arange(count) / count)
-    return keys, np.concatenate([*found, ends[-1:]])
 
 
 def draws(kind: str, seed: int, stream: int, indices: Iterable[int]) -> Array:
@@ -80,6 +65,17 @@ def frequencies(kind: str, seed: int, indices: Iterable[int], at: Array) -> Arra
     ``at`` are the edges of the bands, rad/s.
     """
     return np.asarray(at[:-1] + np.diff(at) * draws(kind, seed, PLACE, indices))
+
+
+def shares(kind: str, seed: int) -> Array:
+    """Return the shares of the energy, 0 to 1, below which `WAVES` frequencies lie.
+
+    In each of the `STRATA` equal parts of the energy as many are drawn, independently of each
+    other: some are then as near to each other as chance has it, and beat over hours. With one
+    frequency in each of many bands nearly none are.
+    """
+    parts = np.repeat(np.arange(STRATA), WAVES // STRATA)
+    return np.asarray((parts + draws(kind, seed, PLACE, range(WAVES))) / STRATA)
 
 
 def upper_frequency(

@@ -62,12 +62,14 @@ class Orbital:
     def at(self, t: float, x: float, y: float, z: float) -> tuple[float, Any]:
         """Return the elevation, m, and velocity, m/s, and acceleration, m/s2, in {n} (6,).
 
-        At ``t``, s, and ``x`` north, ``y`` east, ``z`` below the mean surface, m.
+        At ``t``, s, and ``x`` north, ``y`` east, ``z`` below the mean surface, m. Above the water
+        the values are those of the surface below.
         """
         both = self._phases.move(t, x, y)
         cosines = self._phases.cosines
         elevation = float(self._a.dot(cosines))
-        z += elevation  # Wheeler: the surface is where the theory has z = 0
+        # Wheeler: the surface is where the theory has z = 0; short waves would explode above it.
+        z = max(z + elevation, 0.0)
         if self._shallow:
             return elevation, self._in_depth(z * self._depth / (self._depth + elevation))
         np.multiply(both.reshape(2, -1), np.exp(self._k * -z), out=self._flat)

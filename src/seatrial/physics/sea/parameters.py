@@ -45,7 +45,7 @@ class MeetsWaves(Component):
     )
     sea_seed = _sea(1.0, "1", "seed of the waves (a whole number)", min=0.0, max=_SEED_MAX)
     sea_components_per_octave = _sea(
-        20.0, "1", "waves per octave; 0: as many as hours that vary need", min=0.0, max=200.0
+        0.0, "1", "waves per octave; 0: such that hours vary as at sea", min=0.0, max=200.0
     )
     sea_highest = _sea(
         0.0, "rad/s", "highest frequency; 0: 2 Hz, or 5 times the peak's if more", min=0.0

@@ -85,7 +85,8 @@ class SeaState:
     """s or n of the spreading, 0 for one direction."""
     spreading_form: str = "cos-2s"
     seed: int = 1
-    components_per_octave: int = 20
+    components_per_octave: int = 0
+    """Waves to the octave; 0: `waves.irregular` chooses them so that hours differ."""
     highest: float = 0.0
     """Highest frequency, rad/s; 0: as `HIGHEST` says."""
     depth: float = 0.0

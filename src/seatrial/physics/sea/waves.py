@@ -17,8 +17,8 @@ from .numbers import GRAVITY, Array, Complex, fixed, require_depth, require_posi
 from .spectra import Spectrum, band_energies
 from .spreading import Spreading
 
-_PER_OCTAVE, _HIGH = 20, 0.1
-"""Bands to the octave, and share of the peak above which they are divided, for hours that vary."""
+_FINE = 16
+"""Parts of a band, each with even energy, in which shares of the energy are sought."""
 
 
 @dataclass(frozen=True)
@@ -157,36 +157,55 @@ def irregular(
 
     From half the lowest peak to ``high``, rad/s (`lattice.upper_frequency`), widened to whole
     bands. a = sqrt(2 int S dw) over the band, so that m0 of the range is exact; with
-    ``random_amplitudes`` they are Rayleigh-distributed about it. With ``per_octave`` 0 bands are 20
-    to the octave, and where the density is above a tenth of its peak, in narrow parts
-    (`lattice.divided`) of random amplitudes: a Gaussian sea, whose hours differ. Frequency in the
-    band, phase, and one direction each are drawn by ``seed``; trains of another ``kind`` have draws
-    of their own. ``direction`` is where the sea goes to, rad. Raises InputError for an empty range.
+    ``random_amplitudes`` they are Rayleigh-distributed about it. With ``per_octave`` 0 hours
+    differ as those of a Gaussian sea: where the density is above a tenth of its peak there are
+    `lattice.WAVES` of equal energy, with frequencies drawn independently of each other, and
+    bands, `lattice.PER_OCTAVE` to the octave, elsewhere. Frequency, phase, and one direction each
+    are drawn by ``seed``; trains of another ``kind`` have draws of their own. ``direction`` is
+    where the sea goes to, rad. Raises InputError for an empty range.
     """
-    whole = lattice.bands(0.5 * min(spectrum.peaks), high, per_octave or _PER_OCTAVE)
-    indices: Sequence[int] = whole
-    edges = lattice.edges(whole, per_octave or _PER_OCTAVE)
+    count = per_octave or lattice.PER_OCTAVE
+    bands = lattice.bands(0.5 * min(spectrum.peaks), high, count)
+    edges = lattice.edges(bands, count)
     energy = band_energies(spectrum, edges)
-    is_random = np.full(len(energy), random_amplitudes)
-    if not per_octave:
-        density = energy / np.diff(edges)
-        indices, edges = lattice.divided(whole, _PER_OCTAVE, density > _HIGH * density.max())
-        energy = band_energies(spectrum, edges)
-        is_random = random_amplitudes | (np.diff(edges) < lattice.NARROW)
 
-    def drawn(stream: int) -> Array:
-        return lattice.draws(kind, seed, stream, indices)
+    def train(kind: str, indices: Sequence[int], omega: Array, energy: Array) -> Waves:
+        def drawn(stream: int) -> Array:
+            return lattice.draws(kind, seed, stream, indices)
 
-    if is_random.any():
-        energy = np.where(is_random, energy * -np.log1p(-drawn(lattice.AMPLITUDE)), energy)
-    spread = spreading.angle(drawn(lattice.DIRECTION)) if spreading else np.zeros(len(indices))
-    return Waves(
-        np.sqrt(2.0 * energy),
-        lattice.frequencies(kind, seed, indices, edges),
-        direction + spread,
-        math.tau * drawn(lattice.PHASE),
-        depth,
+        if random_amplitudes:
+            energy = energy * -np.log1p(-drawn(lattice.AMPLITUDE))
+        spread = spreading.angle(drawn(lattice.DIRECTION)) if spreading else np.zeros(len(indices))
+        phase = math.tau * drawn(lattice.PHASE)
+        return Waves(np.sqrt(2.0 * energy), omega, direction + spread, phase, depth)
+
+    omega = lattice.frequencies(kind, seed, bands, edges)
+    if per_octave:
+        return train(kind, bands, omega, energy)
+    density = energy / np.diff(edges)
+    is_dense = density > lattice.DENSE * density.max()
+    others = [band for band, dense in zip(bands, is_dense, strict=True) if not dense]
+    among = f"{kind} peak"
+    peak = _of_shares(spectrum, bands, is_dense, lattice.shares(among, seed))
+    even = np.full(lattice.WAVES, energy[is_dense].sum() / lattice.WAVES)
+    return together(
+        [
+            train(among, range(lattice.WAVES), peak, even),
+            train(kind, others, omega[~is_dense], energy[~is_dense]),
+        ]
     )
+
+
+def _of_shares(
+    spectrum: Spectrum, bands: range, is_dense: npt.NDArray[np.bool_], shares: Array
+) -> Array:
+    """Return the frequencies, rad/s, below which ``shares`` of the energy of dense bands lie."""
+    fine = range(_FINE * bands.start, _FINE * bands.stop)
+    edges = lattice.edges(fine, _FINE * lattice.PER_OCTAVE)
+    density = spectrum.density(edges)
+    energy = 0.5 * (density[1:] + density[:-1]) * np.diff(edges)
+    below = np.cumsum(energy * np.repeat(is_dense, _FINE))
+    return np.interp(shares * below[-1], np.append(0.0, below), edges)
 
 
 def together(trains: Sequence[Waves]) -> Waves:

@@ -11,7 +11,7 @@
 
 typedef struct {
     const char *guid;
-    size_t state_size;
+    size_t state_size, touched; /* `touched`: bytes of an instance that every step needs, from its start on */
     fmi2InstantiateTYPE *instantiate;
     fmi2FreeInstanceTYPE *free_instance;
     fmi2SetupExperimentTYPE *set_up;
@@ -39,6 +39,7 @@ typedef struct {
 const Carrier CARRIER = {
     MODEL_GUID,
     sizeof(State),
+    TOUCHED_OF_INSTANCE,
     fmi2Instantiate,
     fmi2FreeInstance,
     fmi2SetupExperiment,

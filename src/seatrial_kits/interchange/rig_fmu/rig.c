@@ -20,31 +20,33 @@
 #define NS 1e9
 #define LATEST 2e6 /* s, up to which a double gives its nanoseconds back */
 #define ANY_QUANTITY 1e20
+#define LINE 64 /* bytes of a cache's line */
 
 typedef enum { INSTANTIATED, INITIALISING, RUNNING, TERMINATED } Phase;
 typedef enum { CURRENT, TOUCHED, UNSETTLED_STATE } Freshness;
 
 typedef struct { /* all that changes; the components' own states come behind it */
-    double signals[SIGNALS + 1], overrides[SIGNALS + 1], own[SIGNALS + 1], buffer[BUFFER + 1], relaxations[LOOPS + 1];
-    unsigned char overridden[SIGNALS + 1], has_previous[OPERATIONS + 1], touched[NODES + 1];
-    int are_overridden; /* how many signals */
     int64_t steps, now_ns;
     Phase phase;
     Freshness freshness;
-    int failed;
+    int failed, are_overridden; /* how many signals */
+    double signals[SIGNALS + 1], previous[PREVIOUS + 1], relaxations[LOOPS + 1];
+    unsigned char touched[NODES + 1], has_previous[OPERATIONS + 1], overridden[SIGNALS + 1];
+    double overrides[SIGNALS + 1], own[SIGNALS + 1];
 } State;
 
 struct Work { /* operations, bound to the instance that carries them out */
+    Master master;
+    double buffer[BUFFER + 1]; /* of values on their way: no longer than the operations take */
     Operation operations[OPERATIONS + 1];
     Times times; /* of nobody: nothing is timed */
 };
 
 typedef struct {
-    State state;
-    Master master;
     Work *work, *own_work; /* where it carries out operations; that of its own, if it has one */
-    fmi2Component components[NODES + 1];
     volatile int32_t said;
+    fmi2Component components[NODES + 1];
+    State state;
     fmi2CallbackLogger log;
     fmi2ComponentEnvironment environment;
     char name[256];
@@ -87,7 +89,6 @@ void rig_override(fmi2Component c, fmi2ValueReference output, int begins, double
     }
     state->are_overridden += !!begins - state->overridden[place];
     state->overridden[place] = (unsigned char)!!begins;
-    heed_overrides(self);
     state->touched[rig_variables[output].node] = 1;
     if (state->freshness == CURRENT) state->freshness = TOUCHED;
 }
@@ -101,12 +102,24 @@ void rig_lend(fmi2Component c, Work *work) {
     self->own_work = NULL, self->work = work;
 }
 
+static void fetch_lines(const void *from, size_t size) {
+    const char *const end = (const char *)from + size;
+    for (const char *at = (const char *)((uintptr_t)from & ~(uintptr_t)(LINE - 1)); at < end; at += LINE)
+        __builtin_prefetch(at, 0, 2); /* near the processor, beside what it works on */
+}
+
+/* Let the memory that a step of this instance touches come into the caches, while another steps. */
+void rig_fetch(fmi2Component c) {
+    Rig *self = c;
+    fetch_lines(self, offsetof(Rig, state.overridden));
+    for (int i = 0; i < NODES; i++) fetch_lines(self->components[i], rig_nodes[i].carrier->touched);
+}
+
 fmi2Component rig_component(fmi2Component c, int node) { return ((Rig *)c)->components[node]; }
 
 /* Return to before the initialisation, with the values that the rig gives. */
 static fmi2Status begin_anew(Rig *self) {
     memset(&self->state, 0, sizeof self->state);
-    heed_overrides(self);
     for (int i = 0; i < LOOPS; i++) self->state.relaxations[i] = 1.0;
     for (int i = 0; i < GIVEN; i++) {
         const Given *given = rig_given + i;
@@ -161,11 +174,6 @@ fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String guid, f
         fmi2FreeInstance(self);
         return NULL;
     }
-    self->master.signals = self->state.signals;
-    self->master.step_ns = STEP_NS;
-    self->master.said = &self->said;
-    self->master.any_quantity = ANY_QUANTITY;
-    self->master.overrides = self->state.overrides, self->master.own = self->state.own;
     if (begin_anew(self) <= fmi2Warning) return self;
     fmi2FreeInstance(self);
     return NULL;
@@ -228,7 +236,7 @@ fmi2Status fmi2DoStep(fmi2Component c, fmi2Real t, fmi2Real h, fmi2Boolean no_ea
     (void)no_earlier;
     Rig *self = c;
     State *state = &self->state;
-    Master *m = &self->master;
+    Master *m = &self->work->master;
     if (state->phase != RUNNING || !(h >= 0.0 && h < LATEST) || !(fabs(t) < LATEST)) {
         say(self, "%s: no step from %g s over %g s is possible now", self->name, t, h);
         return fmi2Error;

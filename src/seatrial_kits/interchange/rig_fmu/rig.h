@@ -46,6 +46,9 @@ typedef struct {
 /* A component of an instance, as its own functions take it. */
 fmi2Component rig_component(fmi2Component rig, int node);
 
+/* Before a step of an instance: its memory comes into the caches while another steps. */
+void rig_fetch(fmi2Component rig);
+
 /* Operations of any instance, to lend to several, or to free; NULL without memory. */
 typedef struct Work Work;
 Work *rig_new_work(void);

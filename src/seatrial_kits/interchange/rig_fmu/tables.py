@@ -18,7 +18,7 @@ _SIZES = """\
 #define RIG_GUID "{guid}"
 #define STEP_NS INT64_C({step_ns})
 enum {{
-    NODES = {nodes}, SIGNALS = {signals}, BUFFER = {buffer}, LOOPS = {loops},
+    NODES = {nodes}, SIGNALS = {signals}, BUFFER = {buffer}, PREVIOUS = {previous}, LOOPS = {loops},
     SETTLING = {settling}, EXCHANGE = {exchange}, STEPS = {steps}, VISITS = {visits},
     OPERATIONS = {operations}, VARIABLES = {variables}, GIVEN = {given},
     FOLLOWS_AT_ONCE = {at_once}
@@ -45,9 +45,8 @@ class RigTables:
         self._places: list[int] = []
         self._numbers: list[float] = []
         self._reals: list[int] = []
-        self._buffered: dict[int, int] = {}
-        """By address: where it is in an instance's buffer."""
-        self._buffer = 0
+        self._buffer, self._previous = _Places(), _Places()
+        """Of values on their way, and of those that an instance has from the step before."""
         self._rows = [self._row(at, one) for at, one in enumerate(program.operations)]
         self._targets: list[str] = []
         self._variables = [self._variable(name) for name in face.variables]
@@ -60,7 +59,8 @@ class RigTables:
             step_ns=step_ns,
             nodes=len(self._nodes),
             signals=len(self._network.signals),
-            buffer=self._buffer,
+            buffer=self._buffer.size,
+            previous=self._previous.size,
             loops=len(self._program.loops),
             settling=self._begins["settling"],
             exchange=self._begins["exchange"],
@@ -115,9 +115,9 @@ class RigTables:
             fields["references"] = _pooled(self._references, o.references[: o.count])
         if o.kind in (WRITE, LOOP):
             fields["places"] = _pooled(self._places, o.places[: o.count])
-        fields["numbers"] = self._place(o.numbers, o.count * (2 if o.kind == LOOP else 1))
-        fields["values"] = self._place(o.values, o.count)
-        fields["previous"] = self._place(o.previous, o.count)
+        fields["numbers"] = self._buffer.of(o.numbers, o.count * (2 if o.kind == LOOP else 1))
+        fields["values"] = self._buffer.of(o.values, o.count)
+        fields["previous"] = self._previous.of(o.previous, o.count)
         if o.kind == WRITE and o.scaled:
             scales = self._pair(o.which, o.scaled, o.factors, o.offsets)
             fields |= {"scaled": o.scaled, "scales": scales}
@@ -130,16 +130,6 @@ class RigTables:
             fields["reals"] = _pooled(self._reals, o.reals[: o.count])
             fields["loop"] = list(self._program.loops).index(at)
         return "{" + ", ".join(f".{name} = {value}" for name, value in fields.items()) + "}"
-
-    def _place(self, pointer: Any, count: int) -> int:
-        """Return where an array of an instance is in its buffer, the same for the same array."""
-        address = ctypes.cast(pointer, ctypes.c_void_p).value
-        if not address:
-            return -1
-        if address not in self._buffered:
-            self._buffered[address] = self._buffer
-            self._buffer += max(1, count)
-        return self._buffered[address]
 
     def _pair(self, which: Any, count: int, *numbers: Any) -> int:
         """Add places, and numbers of each, which begin at the same index; return it."""
@@ -179,6 +169,24 @@ class RigTables:
                 yield f"{{{number}, 0.0, {quoted(value)}}}"
             else:
                 yield f"{{{number}, {float(value)!r}, 0}}"
+
+
+class _Places:
+    """Arrays one behind the other, each once."""
+
+    def __init__(self) -> None:
+        self.size = 0
+        self._known: dict[int, int] = {}
+
+    def of(self, pointer: Any, count: int) -> int:
+        """Return where an array begins, the same for the same array; -1 for none."""
+        address = ctypes.cast(pointer, ctypes.c_void_p).value
+        if not address:
+            return -1
+        if address not in self._known:
+            self._known[address] = self.size
+            self.size += max(1, count)
+        return self._known[address]
 
 
 def _pooled(pool: list[Any], values: Sequence[Any]) -> int:

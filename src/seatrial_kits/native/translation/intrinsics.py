@@ -128,5 +128,5 @@ def fault_value(frame: Frame, values: FaultValues, index: Any) -> Num:
     """Return one number of a fault's setting."""
     at = frame.text_of(index, "i")
     return frame.num(
-        "d", f"self->state.fault.settings[{values.key}][fault_index(self, {values.key}, {at})]"
+        "d", f"self->state.settings[{values.key}][fault_index(self, {values.key}, {at})]"
     )

@@ -167,7 +167,7 @@ def _attempt(
         else:
             with frame.block(f"if (!{frame.text_of(flag, 'b')}) {{"):
                 breaks.come(frame.names)
-            with frame.block("if (self->error[0]) {"):  # the turn before has computed nothing
+            with frame.block("if (self->is_wrong) {"):  # the turn before has computed nothing
                 frame.emit(f"goto {FAILED};")
             begin()
             frame.loops.append((breaks, continues))

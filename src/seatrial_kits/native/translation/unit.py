@@ -149,8 +149,8 @@ class Unit:
                 count = leaves(shape).count(kind)
                 if count:
                     yield f"{C_TYPES[kind]} {name}_{kind}[{count}];"
+        yield from (f"Queue {name}_q;" for name in self.queues)
         for name, shape in self.queues.items():
-            yield f"Queue {name}_q;"
             yield f"double {name}_e[QUEUE_SIZE][{max(1, len(leaves(shape)))}];"
 
     def constants(self) -> Iterator[str]:

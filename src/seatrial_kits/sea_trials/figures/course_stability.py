@@ -73,8 +73,8 @@ def spiral(
 
     Steps begin at ``orders``, s; without them a step is a stretch of unchanged helm, so that the
     spiral is a direct one. It has at least eight rows; its helm, rate and speed are means over its
-    last tenth, with ``orders`` over its last two fifths. Without a ``length``, m, the rates are r,
-    rad/s. Raises InputError without helm, or with less than three steps.
+    last tenth, with ``orders`` over its last two fifths. Without a ``length``, m, the rates are
+    r, rad/s. Raises InputError without helm, or with less than three steps.
     """
     if record.helm is None:
         raise InputError("spiral: the record has no helm")
