@@ -37,9 +37,7 @@ def main(vehicle: str, folder: str | None = None) -> None:
     with tempfile.TemporaryDirectory() as temporary:
         done = Path(folder or temporary) / ("" if folder else "trials")
         if folder is None:
-            run_campaign(
-                "sea-trials", set={"choices.vehicle": vehicle}, out=done, engine="native"
-            )
+            run_campaign("sea-trials", set={"choices.vehicle": vehicle}, out=done, engine="native")
         campaign_page(done)
         trials = json.loads((done / DATA).read_text("utf-8"))
     rows = ",\n".join(f" {json.dumps(row)}" for row in kept(trials))

@@ -9,7 +9,7 @@ INTERRUPTED = "interrupted by the user"
 """Message of a component that a signal interrupted; a message crosses the FMI, an exception not."""
 _MOST_LISTED = 30
 _NEAREST, _LIKE = 10, 0.4
-"""Of more names the ones shown: so many, at least so like (difflib's ratio)."""
+"""Shown names of a long list: their number, and their least likeness (difflib's ratio)."""
 
 
 class SeatrialError(Exception):

@@ -27,7 +27,7 @@ class Assembled:
     trial: Trial | None = None
     events: tuple[Event, ...] = ()
     faults: tuple[Fault, ...] = ()
-    """Of the trial, in the order of its file."""
+    """Entries of the trial, in the order of its file."""
 
     @property
     def weather_seeds(self) -> list[str]:
@@ -195,7 +195,7 @@ def cannot_start_anew(system: System) -> list[str]:
 
 @dataclass(frozen=True)
 class Origin:
-    """What a system starts with: its seed, and what was given to each component."""
+    """Start of a system: its seed, and the values given to each component."""
 
     seed: int
     given: Mapping[str, Mapping[str, Given]]

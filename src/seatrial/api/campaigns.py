@@ -33,7 +33,7 @@ class CaseResult:
     trial: str
     """Name of its trial."""
     set: dict[str, Any]
-    """What the campaign set, as written: ``component.port`` or a key of the trial."""
+    """Settings of the campaign, as written: ``component.port`` or a key of the trial."""
     folder: Path
     status: str
     passed: bool
@@ -62,7 +62,7 @@ class CampaignResult:
         self.cases = [self._case(entry) for entry in index["cases"]]
         """In the order of the campaign; beside a table those that have kept their folders."""
         self.criteria: list[dict[str, str]] = index.get("criteria", [])
-        """Of the campaign's own criteria: ``name``, ``check``, ``verdict`` and ``detail``."""
+        """Campaign's own criteria: ``name``, ``check``, ``verdict`` and ``detail``."""
 
     @cached_property
     def passed(self) -> bool:
@@ -73,7 +73,7 @@ class CampaignResult:
 
     @cached_property
     def _counted(self) -> tuple[int, int]:
-        """How many cases passed, and of how many."""
+        """Numbers of cases that passed, and of all cases."""
         if self.table is None:
             return sum(case.passed for case in self.cases), len(self.cases)
         from ..trial.campaigns.table import read_rows

@@ -11,7 +11,7 @@ from .signals import Signals
 
 
 class _Timed(Protocol):
-    """What is recorded: it knows its simulated time, s."""
+    """Source of a record, with its simulated time, s."""
 
     @property
     def time(self) -> float: ...
@@ -40,7 +40,7 @@ class Recording:
 
     @property
     def signals(self) -> Signals:
-        """What was recorded so far, as the arrays of a run's result.
+        """Signals recorded so far, as the arrays of a run's result.
 
         Bytes are of the type object.
         """

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Verdict:
-    """What became of a criterion in a run."""
+    """Verdict on a criterion in a run."""
 
     name: str
     check: str
@@ -58,7 +58,7 @@ class TrialResult:
         self.manifest: dict[str, Any] = read_manifest(self.folder)
         """Everything that decides the signals: versions, hashes, seeds, parameters, sources."""
         self.notes = notes
-        """What the user should know of the rig and of the steps; of a run read again, nothing."""
+        """Remarks for the user on the rig and the steps; empty for a run read again."""
         self.verdicts: list[Verdict] = [
             Verdict(**{key: entry[key] for key in Verdict.__dataclass_fields__ if key in entry})
             for entry in read_verdicts(self.folder)
@@ -72,7 +72,7 @@ class TrialResult:
 
     @property
     def status(self) -> str:
-        """How it ended.
+        """End of the run.
 
         ``complete``; ``ended`` by a criterion; ``ended by COMPONENT``; ``stopped``, ``failed`` or
         still ``running``.

@@ -54,9 +54,9 @@ class State:
         self.simulation = simulation
         """The simulation that saved it, and that alone can restore it."""
         self.snapshot = snapshot
-        """What the master keeps."""
+        """State of the master."""
         self.origin = simulation._origin
-        """What the simulation had started with."""
+        """Settings with which the simulation started."""
 
 
 class Simulation:

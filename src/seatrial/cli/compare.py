@@ -26,14 +26,14 @@ def compare(
     ],
     page: Annotated[
         Path | None,
-        typer.Option("--page", metavar="FILE", help="Of campaigns: write a page (HTML), too."),
+        typer.Option("--page", metavar="FILE", help="Write a page (HTML) too, for campaigns."),
     ] = None,
     match: Annotated[
         list[str] | None,
         typer.Option(
             "--match",
             metavar="SIGNAL=CHANNEL[:UNIT],...",
-            help="Of a run and a log: signals and the channels that are the same.",
+            help="Signals of a run and the equal channels of a log.",
         ),
     ] = None,
     columns: LogColumns = None,

@@ -39,7 +39,7 @@ from .watch import Watch
 
 def convergence(
     trial: Annotated[str, typer.Argument(help="A trial: a name, a file or a package.")],
-    halvings: Annotated[int, typer.Option(help="How often the step is halved, at least 2.")] = 2,
+    halvings: Annotated[int, typer.Option(help="Number of halvings of the step, at least 2.")] = 2,
     settings: Settings = None,
     choices: Choices = None,
     vehicle: Vehicle = None,

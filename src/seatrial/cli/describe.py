@@ -41,7 +41,7 @@ def describe(
         Path | None, typer.Option("--diagram", metavar="FILE", help="Draw it into a file, as SVG.")
     ] = None,
 ) -> None:
-    """Show a rig's components, rigs inside it, every connection, and what is left open."""
+    """Show a rig's components, inner rigs, connections, and open inputs."""
     if drawn is not None and drawn.suffix.lower() != ".svg":
         raise InputError(f"--diagram: {drawn}: the drawing is SVG: a name that ends in .svg")
     changes = changes_of(None, choices, vehicle, autopilot)

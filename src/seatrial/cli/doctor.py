@@ -24,7 +24,7 @@ _PLATFORMS = {("Linux", "x86_64"), ("Windows", "AMD64")}
 
 
 def doctor() -> None:
-    """Show what works on this machine, what is missing, and how to fix it."""
+    """Check this machine: working parts, missing parts, and remedies."""
     checks: list[tuple[str, Callable[[], tuple[bool, str]]]] = [
         ("Python", _python),
         ("platform", _platform),

@@ -94,9 +94,7 @@ def build(
     choices: Choices = None,
     vehicle: Vehicle = None,
     autopilot: Autopilot = None,
-    seed: Annotated[
-        int | None, typer.Option(help="Of a rig: what all noise derives from (default: 1).")
-    ] = None,
+    seed: Annotated[int | None, typer.Option(help="Seed of a rig's noise (default: 1).")] = None,
 ) -> None:
     """Build .fmu files that any tool loads which knows FMI 2.0, or 3.0."""
     version = _version(fmi)

@@ -26,11 +26,11 @@ _INVENTED = "every number in them is invented"
 _NAME = Annotated[
     str, typer.Argument(metavar="NAME", help="Letters, digits, '-' and '_', 40 at most.")
 ]
-_VEHICLE = Annotated[str, typer.Argument(metavar="NAME", help="Of your vehicle.")]
-_PACKAGE = Annotated[str, typer.Argument(metavar="NAME", help="Of the package, as my_boat.")]
+_VEHICLE = Annotated[str, typer.Argument(metavar="NAME", help="Name of your vehicle.")]
+_PACKAGE = Annotated[str, typer.Argument(metavar="NAME", help="Name of the package: my_boat.")]
 _ROS_NAME = re.compile(r"[a-z](_?[a-z0-9]+)*")
 _LIKE = Annotated[str, typer.Option(help="; ".join(f"'{k}': {v}" for k, v in KINDS.items()) + ".")]
-_LIKE_IT = Annotated[str, typer.Option(help=f"What the vehicle is like: {', '.join(KINDS)}.")]
+_LIKE_IT = Annotated[str, typer.Option(help=f"Kind of the vehicle: {', '.join(KINDS)}.")]
 
 
 @new_app.callback()

@@ -67,7 +67,7 @@ LogFormat = Annotated[
     typer.Option("--format", metavar="NAME", help="Format of a log (default: by its content)."),
 ]
 Hardware = Annotated[
-    bool, typer.Option("--hardware", help="Allow devices; what is behind them may move.")
+    bool, typer.Option("--hardware", help="Allow devices; equipment behind them may move.")
 ]
 Network = Annotated[
     bool, typer.Option("--network", help="Allow other hosts, and connections from them.")

@@ -31,7 +31,7 @@ from .expressions import (
 from .ports import Port
 
 _Run = tuple[slice, slice]
-"""Where ports side by side have their values, among all and among their own, stacked."""
+"""Places of values of ports side by side, among all and among their own, stacked."""
 
 InputFunction = Callable[[float, SimpleNamespace], Mapping[str, Any]]
 
@@ -91,7 +91,7 @@ class Plant(Component):
 
     transient = Component.transient | {"_buffers", "_u", "_p", "_h", "_x1", "_y", "machine"}
     machine: Callable[[ca.Function], ca.Function] = staticmethod(lambda function: function)
-    """What makes others, with the same numbers, of the functions of a step."""
+    """Maker of other functions of a step, with the same numbers."""
 
     state_ports: ClassVar[tuple[Port, ...]] = ()
     input_ports: ClassVar[tuple[Port, ...]] = ()

@@ -38,7 +38,7 @@ ROLES = {
     "can": "the same with operations of a CAN bus: a terminal of FMI-LS-BUS too in FMI 3.0",
     "tunable": "values of a link's tunables, in their order: connected to what they set",
 }
-"""What whoever runs a component does with a port that declares a role."""
+"""Roles of ports, and their treatment by the program that runs a component."""
 
 BYTES = ("bytes", "can")
 """Roles of texts that are bytes with their times."""

@@ -81,9 +81,9 @@ ORDERED = (
 """Members of ``orders`` from whoever commands; a pilot answers ``leg_reached`` and others."""
 
 MOTION = terminal("position", "velocity", "attitude", "rates", "acceleration")
-"""What every craft gives under the name ``motion``."""
+"""Outputs of every craft under the name ``motion``."""
 
 ATTACHMENT = terminal(
     point="attachment_point", velocity="attachment_velocity", force="attachment_force"
 )
-"""Where a tether or a tow holds any craft: it gives point and velocity and takes the force."""
+"""Attachment of a tether or a tow to any craft: point and velocity out, force in."""

@@ -87,7 +87,7 @@ def _seconds(written: float | str) -> float:
 
 WIDTH, HEIGHT = 64, 9
 _SHARE = 0.1
-"""Of the record, before the limit is broken and after the moment."""
+"""Part of the record before the limit is broken and after the moment."""
 _LEAST_ROWS = 8
 
 

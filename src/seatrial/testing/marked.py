@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from ..trial.files.trial import Trial
 
 _LISTS = {"vehicles": "choices.vehicle", "autopilots": "choices.autopilot", "seeds": "seed"}
-"""What a list of the mark sets, one of it at a time."""
+"""Settings of a mark's list, one at a time."""
 
 
 @dataclass(frozen=True)

@@ -54,7 +54,7 @@ class TrialRun:
 
     @cached_property
     def _paths(self) -> dict[str, str]:
-        """How signals are recorded that the criteria name by what a rig shows."""
+        """Recorded names of signals that the criteria name by a rig's shown names."""
         criteria = self.result.manifest["criteria"]
         return {name: path for entry in criteria for name, path in entry["paths"].items()}
 

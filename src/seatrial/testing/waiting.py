@@ -17,7 +17,7 @@ _SHOWN = 8
 
 
 class Queue(Generic[Item]):
-    """What arrives from a simulation, in its order; `expect` goes on behind what it found."""
+    """Arrivals from a simulation, in order; `expect` continues behind its last find."""
 
     def __init__(self, bench: Simulation, shown: Callable[[Item], str]) -> None:
         self.items: list[Item] = []

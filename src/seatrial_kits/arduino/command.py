@@ -36,7 +36,7 @@ _BACKEND = Annotated[str, typer.Option(help="'host' or 'simavr'.")]
 _MCU = Annotated[str, typer.Option(help="atmega2560 or atmega328p.")]
 _PROFILE = Annotated[str, typer.Option(help="PROFILE:LINK whose parameters to use: gloria:mega.")]
 _LIBRARIES = Annotated[str, typer.Option(help="Folders of libraries, from the sketch's on; with ;")]
-_ENVIRONMENT = Annotated[str, typer.Option(help="Of platformio.ini; default_envs if none.")]
+_ENVIRONMENT = Annotated[str, typer.Option(help="Environment of platformio.ini (default_envs).")]
 _FLAGS = Annotated[str, typer.Option(help="Options of the compiler, as '-DNAME=VALUE'.")]
 
 
@@ -73,7 +73,7 @@ def check(
     flags: _FLAGS = "",
     environment: _ENVIRONMENT = "",
 ) -> None:
-    """Say what a sketch is made of, what of it is unsupported, and if its lines fit a profile."""
+    """Check a sketch: its parts, unsupported calls, and its lines against a profile."""
     values = _values(profile, mcu=mcu, libraries=libraries, flags=flags, environment=environment)
     found = _found(sketch, values)
     board = _mcu(found, values)

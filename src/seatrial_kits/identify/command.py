@@ -29,7 +29,7 @@ _REJECTED = 1
 
 
 def identify(
-    experiment: Annotated[str, typer.Argument(help="What the log holds: a name or a .toml file.")],
+    experiment: Annotated[str, typer.Argument(help="Experiment: a name or a .toml file.")],
     log: Annotated[
         Path | None, typer.Option("--log", help="A log, or a run folder, instead of the file's.")
     ] = None,

@@ -28,10 +28,11 @@ def write_ros2_bag(run: Run, path: Path) -> None:
 
     Each component is a topic, ``/vehicle/hull``, whose recorded numbers, flags and texts are the
     fields of its messages, ``position_x``; their type is defined in the bag. Craft are in the
-    axes of ROS (REP 103, REP 105): ``/tf`` from "map", east-north-up, to NAME, ahead-left-up; below ``/NAME`` the topics of the kit ros2: ``odometry/ground_truth``
-    nav_msgs/Odometry with velocity and rates in body axes; ``imu/data`` sensor_msgs/Imu, the truth
-    without noise; ``gnss/fix`` sensor_msgs/NavSatFix, if the profile says a home. Times are those
-    of the simulation.
+    axes of ROS (REP 103, REP 105): ``/tf`` from "map", east-north-up, to NAME, ahead-left-up;
+    below ``/NAME`` the topics of the kit ros2: ``odometry/ground_truth`` nav_msgs/Odometry with
+    velocity and rates in body axes; ``imu/data`` sensor_msgs/Imu, the truth without noise;
+    ``gnss/fix`` sensor_msgs/NavSatFix, if the profile says a home. Times are those of the
+    simulation.
 
     Raises InputError if ``path`` is there already, if the package rosbags is not installed,
     and for a record that begins before the time 0.

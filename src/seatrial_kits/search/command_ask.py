@@ -34,9 +34,10 @@ def ask(
         typer.Option(
             "--ask",
             metavar="QUESTION",
-            help="'limits': the boundary of what passes; 'worst-case': the least robustness, and "
-            "the smallest change that fails; 'sensitivity': how much each key matters; 'rare': how "
-            "likely a failure is; 'tune': the best values of gains over all that varies.",
+            help="'limits': the boundary of the passing region; 'worst-case': the least "
+            "robustness, and the smallest change that fails; 'sensitivity': how much each key "
+            "matters; 'rare': how likely a failure is; 'tune': the best values of gains over all "
+            "that varies.",
         ),
     ],
     engine: EngineName = "fmu",

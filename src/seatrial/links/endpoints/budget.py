@@ -24,7 +24,7 @@ SMALLEST_SHARE = 64
 
 
 class Budget:
-    """What one poll may take in; ``exceeded`` is in how many polls a peer brought more.
+    """Bytes that one poll may accept; ``exceeded`` counts the polls in which a peer sent more.
 
     What a peer does not use it has later, up to `MOST`: an honest one may send at once what it had
     to say. Peers that have that much leave their share to the others.

@@ -40,7 +40,7 @@ LARGEST_DATAGRAM = 65536
 
 
 class Reached(Protocol):
-    """What a component reports of an endpoint, or of a gateway."""
+    """Report of a component on an endpoint, or on a gateway."""
 
     budget: Budget
     is_lost: bool
@@ -80,15 +80,15 @@ class Endpoint(ABC):
     """As it is bound: with the port's number where 0 was given."""
 
     budget = Budget()
-    """What one poll takes in: each object sets its own, unless it bounds that in another way."""
+    """Budget of one poll: each object sets its own, unless it has another bound."""
 
     is_lost = False
     """Whether what the URL names was there and is gone. Where peers come and go, none is lost."""
     reconnections = 0
-    """How often it came back."""
+    """Number of reconnections."""
 
     peers: Literal["named", "connected", "senders"] = "named"
-    """Who they are: those that the URL names, all that connect, or all that send something."""
+    """Peers: those that the URL names, all that connect, or all that send bytes."""
 
     @abstractmethod
     def channels(self) -> Sequence[Channel]:

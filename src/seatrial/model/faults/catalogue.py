@@ -24,7 +24,7 @@ class Setting:
     measure: Measure
     meaning: str
     default: float | None = None
-    """None: it must be written."""
+    """A setting without it must be written."""
 
 
 @dataclass(frozen=True)
@@ -265,4 +265,4 @@ def kinds() -> Mapping[str, Kind]:
 
 
 FAILURES = ("off", "stuck", "garbage", "wrong", "slow", "delayed", "intermittent")
-"""What a whole device does: MAVLink's FAILURE_TYPE from 1, in its order."""
+"""Failures of a whole device: MAVLink's FAILURE_TYPE from 1, in its order."""

@@ -46,7 +46,7 @@ class Moment:
 
     @property
     def share(self) -> float:
-        """How far it has grown, 0 to 1."""
+        """Growth of the fault, 0 to 1."""
         return self.share_at(self.t_ns)
 
     def share_at(self, t_ns: int) -> float:
@@ -67,7 +67,7 @@ def drawing(seed: int, name: str) -> Draw:
 
 
 class Operator(ABC):
-    """What a fault makes of the value x of one signal at a moment: y."""
+    """Value y that a fault makes of the value x of one signal at a moment."""
 
     def first(self, x: Any, moment: Moment) -> Any:
         """Return what is remembered as the fault begins with the value ``x``."""

@@ -11,7 +11,7 @@ import casadi as ca
 
 @dataclass(frozen=True)
 class Context:
-    """What terms are functions of, as CasADi expressions; {n} north-east-down, {b} body axes."""
+    """Arguments of terms, as CasADi expressions; {n} north-east-down, {b} body axes."""
 
     position: Any
     """Body origin in {n}, m."""

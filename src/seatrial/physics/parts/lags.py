@@ -19,7 +19,7 @@ _FULL_TURN = math.tau - 1e-3
 
 
 class Lag(NamedTuple):
-    """How an order is limited, and how it is followed."""
+    """Limits of an order, and the lag that follows it."""
 
     low: Any
     high: Any

@@ -40,7 +40,7 @@ class Flow(NamedTuple):
 
 
 class Screw(NamedTuple):
-    """What the propeller does."""
+    """Rate, thrust, torque and advance ratio of the propeller."""
 
     rate: Any
     thrust: Any

@@ -16,7 +16,7 @@ from ..craft.context import Context, wrench
 from .flow import STILL
 
 _SMALL = 1e-12
-"""Of an order, below which powers of it are linear."""
+"""Share of an order, below which its powers are linear."""
 
 
 @dataclass(frozen=True)
@@ -28,7 +28,7 @@ class Drive:
     order: Any
     """Order that acts, -1 to 1."""
     direction: Any
-    """Of the thrust ahead, turned by the angle, unit vector, {b}."""
+    """Direction of the thrust ahead, turned by the angle, unit vector, {b}."""
     flow: Any
     """Velocity of its place through the water, {b}, m/s."""
 
@@ -40,7 +40,7 @@ class Drive:
 
 @dataclass(frozen=True)
 class Push:
-    """What a propulsor does, as expressions."""
+    """Forces of a propulsor, as expressions."""
 
     load: Any
     """Force and moment about the body origin (6,), {b}, N and N.m."""

@@ -97,7 +97,7 @@ class GaussMarkov:
     """T, s."""
     seed: int
     kind: str
-    """What varies: two kinds of one seed are independent."""
+    """Kind of variation: two kinds of one seed are independent."""
     period: float = 1.0
     """P between samples, s."""
 

@@ -31,7 +31,7 @@ class CurrentState:
     speed: float = 0.0
     """m/s at the surface."""
     direction: float = 0.0
-    """Where it goes to, rad from north."""
+    """Direction to which the current goes, rad from north."""
     profile: str = "uniform"
     """One of `PROFILES`: power V (1 - z/reach)^(1/7), linear V (1 - z/reach)."""
     reach: float = 0.0
@@ -43,7 +43,7 @@ class CurrentState:
     tide: float = 0.0
     """Greatest speed of the tidal stream, m/s."""
     tide_axis: float = 0.0
-    """Where it goes to at its greatest, rad from north."""
+    """Direction to which the greatest current goes, rad from north."""
     tide_minor: float = 0.0
     tide_period: float = TIDES["M2"]
     tide_phase: float = 0.0

@@ -36,7 +36,7 @@ class PanelTables:
     wave_omega: Array
     """Frequencies of the waves, rad/s, rising."""
     chi: Array
-    """Where waves go to from the bow, rad, clockwise seen from above: 0 following sea, (c,)."""
+    """Direction of waves from the bow, rad, clockwise from above: 0 following sea, (c,)."""
     excitation: Complex
     """Force of fixed hull per metre of amplitude, (6, w, c), of exp(i theta) at the origin."""
 

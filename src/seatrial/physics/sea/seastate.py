@@ -55,7 +55,7 @@ class Swell(NamedTuple):
     period: float
     """Tp, s."""
     direction: float
-    """Where it goes to, rad from north."""
+    """Direction to which the swell goes, rad from north."""
     gamma: float
     spreading: float
 
@@ -79,7 +79,7 @@ class SeaState:
     period: float = 0.0
     """Tp, s."""
     direction: float = 0.0
-    """Where the waves go to, rad from north."""
+    """Direction to which the waves go, rad from north."""
     gamma: float = 3.3
     spreading: float = 0.0
     """s or n of the spreading, 0 for one direction."""

@@ -23,12 +23,12 @@ _FINE = 16
 
 @dataclass(frozen=True)
 class WaterMotion:
-    """What waves do at points; the last axis is over the components of a vector, in {n}."""
+    """Motion of waves at points; the last axis is over the components of a vector, in {n}."""
 
     elevation: Array
-    """Of the surface above the mean, m, positive up."""
+    """Elevation of the surface above the mean, m, positive up."""
     slope: Array
-    """Of the elevation to north and east, rad."""
+    """Slope of the elevation to north and east, rad."""
     velocity: Array
     """m/s, north, east, down."""
     acceleration: Array

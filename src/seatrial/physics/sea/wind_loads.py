@@ -46,7 +46,7 @@ def angle_of_attack(u: float, v: float) -> float:
 
 @dataclass(frozen=True)
 class Silhouette:
-    """What a ship shows to the wind. Raises InputError for an area or length not above 0."""
+    """Windage of a ship. Raises InputError for an area or length not above 0."""
 
     length: float
     """Over all, m."""

@@ -39,7 +39,7 @@ class WindState:
     speed: float = 0.0
     """Mean at 10 m, m/s."""
     direction: float = 0.0
-    """Where it blows to, rad from north."""
+    """Direction to which the wind blows, rad from north."""
     profile: str = "uniform"
     spectrum: str = NONE
     gust: float = 0.0

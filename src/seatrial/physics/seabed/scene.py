@@ -15,7 +15,7 @@ from .vectors import Hit, Nearest, Vector, along, unit
 
 @dataclass(frozen=True, eq=False)
 class Scene:
-    """What a ray in the water can meet; ``bed`` is None where there is no bottom."""
+    """Surfaces that a ray in the water can meet; ``bed`` is None where there is no bottom."""
 
     bed: Plane | Grid | None
     obstacles: tuple[Shape, ...] = ()

@@ -11,7 +11,7 @@ Vector = tuple[float, float, float]
 
 @dataclass(frozen=True)
 class Hit:
-    """Where a ray first meets something."""
+    """First intersection of a ray."""
 
     distance: float
     """From the ray's origin, m; 0 if that is inside."""
