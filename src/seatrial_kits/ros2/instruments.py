@@ -22,6 +22,7 @@ SENSORS: Mapping[str, tuple[str, ...]] = {
     "velocity": ("gnss",),
     "pressure": ("depth", "ctd"),
     "dvl": ("dvl",),
+    "dvl_report": ("dvl",),
     "water_speed": ("speed-log",),
     "water_depth": ("echo-sounder", "dvl"),
     "wind": ("anemometer",),
@@ -63,6 +64,17 @@ class Instruments:
             found = turned(own, TO_ENU if world else TO_FLU).ravel()
             self._covariances[known] = [float(v) for v in found]
         return self._covariances[known]
+
+    def dvl_covariance(self) -> list[float]:
+        """Return that of a DVL's velocity, in its own axes or ahead-left-up; zeros if unknown.
+
+        One beam's noise s makes s / (sqrt(2) sin a) ahead and abeam, s / (2 cos a) down, with
+        the angle a of the beams (`seatrial.devices.dvl.Dvl`).
+        """
+        (beam,) = self.deviations("dvl", "bottom", 1)
+        angle = axis(self._of["dvl"].get("beam_angle", math.radians(22.5)))
+        level, down = beam / (math.sqrt(2.0) * math.sin(angle)), beam / (2.0 * math.cos(angle))
+        return [level**2, 0.0, 0.0, 0.0, level**2, 0.0, 0.0, 0.0, down**2]
 
     def deviations(self, key: str, quantity: str, count: int = 3) -> list[float]:
         """Return the standard deviations of a quantity: noise and slow error together."""
