@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from functools import lru_cache
 
+from seatrial.control.guidance import RESTING
 from seatrial.system.assembly import assemble
 from seatrial.system.part import Part
 from seatrial.system.system import System
@@ -74,7 +75,7 @@ def abilities(system: System) -> frozenset[str]:
                 found.add(STOPS)
             if _value(part, "depth_control") == "on":
                 found.add(DIVES)
-            if _value(part, "staying") == "rest":
+            if _value(part, "staying") in RESTING:
                 found.add(STAYS)
     return frozenset(found if STOPS in found else found - {STAYS, MOORED})
 

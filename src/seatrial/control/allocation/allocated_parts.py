@@ -14,8 +14,6 @@ from ...physics.parts.slots import COUNT, FOILS, PROPULSORS, FoilSlots, Propulso
 from ...physics.parts.steering import require_steering
 from .part_wrenches import AXES, Array, capacities, given_alone, lift_wrench, read_axes, thrust_wrench
 
-TURNING = ("azimuth", "outboard", "jet")
-"""Kinds of propulsors that turn, if their range lets them."""
 BY_SPEED = ("propeller", "wageningen-b", "four-quadrant", "jet")
 """Kinds whose order is a share of the shaft speed: at rest their thrust goes by its square."""
 _NO_THRUST = tuple(PropulsorSlots.ports["propulsor_thrust_1"].start)
@@ -155,13 +153,13 @@ class AllocatedParts(PropulsorSlots, FoilSlots):
     def _turns(self, number: int) -> bool:
         """Return whether a propulsor turns, by itself or with another one."""
         least, most = self.propulsor_angle_limit[self._leaders[number]]
-        return self._kinds[number] in TURNING and bool(least < most)
+        return bool(least < most)
 
     def _at_rest(self, number: int) -> float:
         """Return the angle of a propulsor at the start: the one of its range nearest to 0."""
-        turns = number < len(self._kinds) and self._kinds[number] in TURNING
-        least, most = self._ranges[self._leaders[number] if turns else number]
-        return float(min(max(0.0, least), most)) if turns else 0.0
+        leader = self._leaders[number] if number < len(self._kinds) else number
+        least, most = self._ranges[leader]
+        return float(min(max(0.0, least), most))
 
     def _thrust(self, number: int, angle: float) -> Array:
         """Return the wrench of a propulsor at share 1."""
