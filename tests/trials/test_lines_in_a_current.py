@@ -57,7 +57,9 @@ def simulated(tmp_path, monkeypatch):
 @pytest.mark.parametrize("kind", ACROSS)
 def test_it_holds_a_line_across_a_current_with_the_crab_angle_of_its_speed(kind, simulated):
     depth = 3 if kind in ("rov", "auv") else 0
-    rows = simulated(kind, LINE.format(current=CURRENT, depth=depth), 600 if kind == "ship" else 240)
+    rows = simulated(
+        kind, LINE.format(current=CURRENT, depth=depth), 600 if kind == "ship" else 240
+    )
     late = rows[2 * len(rows) // 3 :]
     assert np.abs(late[:, 2]).max() < ACROSS[kind]
     # Through the water u_r ahead, no sway: u_r sin(psi) = -V, u = u_r + V sin(psi) over ground.

@@ -281,10 +281,14 @@ class Guidance(GuidanceOrders):
     # ------------------------------------------------------------------ what the craft can do
 
     def _law(self) -> Law:
-        return super()._law()._replace(
-            approach_gain=self.approach_gain,
-            depth_tolerance=self.depth_tolerance,
-            vanes=self.staying == "weather-vane",
+        return (
+            super()
+            ._law()
+            ._replace(
+                approach_gain=self.approach_gain,
+                depth_tolerance=self.depth_tolerance,
+                vanes=self.staying == "weather-vane",
+            )
         )
 
     def _circle(self) -> float:

@@ -12,7 +12,15 @@ from ...model.component import Parameter
 from ...physics.parts.lift import lift_slope
 from ...physics.parts.slots import COUNT, FOILS, PROPULSORS, FoilSlots, PropulsorSlots, read_kinds
 from ...physics.parts.steering import require_steering
-from .part_wrenches import AXES, Array, capacities, given_alone, lift_wrench, read_axes, thrust_wrench
+from .part_wrenches import (
+    AXES,
+    Array,
+    capacities,
+    given_alone,
+    lift_wrench,
+    read_axes,
+    thrust_wrench,
+)
 
 BY_SPEED = ("propeller", "wageningen-b", "four-quadrant", "jet")
 """Kinds whose order is a share of the shaft speed: at rest their thrust goes by its square."""

@@ -39,8 +39,7 @@ def weighted_least_squares(
         move = _to_the_least(scaled, effort, rest, x, free)
         share, blocking = _share_within(x, move, low, high)
         ends = [
-            most if step > 0.0 else least
-            for step, least, most in zip(move, low, high, strict=True)
+            most if step > 0.0 else least for step, least, most in zip(move, low, high, strict=True)
         ]
         moved = [
             within(at + share * step, least, most)
@@ -48,7 +47,8 @@ def weighted_least_squares(
         ]
         # Exactly on its bound, whatever rounding left.
         x = [
-            end if i == blocking else at for i, (end, at) in enumerate(zip(ends, moved, strict=True))
+            end if i == blocking else at
+            for i, (end, at) in enumerate(zip(ends, moved, strict=True))
         ]
         rest = short_of(goal, scaled, x)
         if blocking >= 0:
@@ -58,8 +58,7 @@ def weighted_least_squares(
             free = [one and i != blocking for i, one in enumerate(free)]
             continue
         descent = [
-            dot(column, rest) - eps * at
-            for column, eps, at in zip(scaled, effort, x, strict=True)
+            dot(column, rest) - eps * at for column, eps, at in zip(scaled, effort, x, strict=True)
         ]
         released = _inwards(descent, x, free, low, high)
         if released < 0:
@@ -104,7 +103,9 @@ def _to_the_least(
     column of a variable that is not free is 0, and so is its move. Rows of B should come with
     the largest first: each keeps its own precision then (Cox & Higham 1998).
     """
-    left = [[one if is_free else 0.0 for one in c] for c, is_free in zip(columns, free, strict=True)]
+    left = [
+        [one if is_free else 0.0 for one in c] for c, is_free in zip(columns, free, strict=True)
+    ]
     triangle: list[tuple[float, float, list[float]]] = []
     for eps, at, is_free in zip(effort, x, free, strict=True):
         pivot, *left = left
@@ -142,9 +143,7 @@ def _share_within(x: Column, move: Column, low: Column, high: Column) -> tuple[f
     return share, blocking
 
 
-def _inwards(
-    descent: Column, x: Column, free: Sequence[bool], low: Column, high: Column
-) -> int:
+def _inwards(descent: Column, x: Column, free: Sequence[bool], low: Column, high: Column) -> int:
     """Return the active bound from which the descent leads inwards the steepest, -1 for none."""
     steepest, found, largest = 0.0, -1, 0.0
     rows = zip(descent, x, free, low, high, strict=True)

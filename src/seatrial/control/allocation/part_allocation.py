@@ -159,7 +159,10 @@ class PartAllocation(AllocatedParts, Sampled):
         """Return the parts that do not turn, as they are at this speed."""
         ahead = self.speed if self.speed >= self.steerage_speed else 0.0
         pressure = 0.5 * self.density * ahead**2
-        effects = [*[self._effect(number) for number in self._fixed], *[pressure for _ in self._foils]]
+        effects = [
+            *[self._effect(number) for number in self._fixed],
+            *[pressure for _ in self._foils],
+        ]
         columns = [
             [effect * one for one in column]
             for effect, column in zip(effects, self._columns, strict=True)
