@@ -87,9 +87,9 @@ class Guidance(GuidanceOrders):
     from ``drift_limit`` on, at ``approach_gain`` times the distance beyond, and not further in:
     a pendulum that wind and current swing to leeward of the point, where it lies bow up. With
     ``circle``, for a craft that cannot stop, it circles as in loiter, also by line of sight:
-    clockwise for a positive radius. A leg's ``leg_circle`` asks for a circle at its end. ``proceed`` is for a ship: as circle, but where
-    there is no place to stay at (hold, guided without a set-point, auto without a leg) it keeps
-    the heading wanted last, or its own.
+    clockwise for a positive radius. A leg's ``leg_circle`` asks for a circle at its end.
+    ``proceed`` is for a ship: as circle, but where there is no place to stay at (hold, guided
+    without a set-point, auto without a leg) it keeps the heading wanted last, or its own.
 
     **Speed.** What is wanted times max(turning_speed, cos(heading error)): a craft that turns on
     the spot slows down to turn (turning_speed = 0), one that needs steerage does not (1).
