@@ -80,7 +80,7 @@ class AllocatedParts(PropulsorSlots, FoilSlots):
         self._foil_kinds = read_kinds(self.foils, "foil", FOILS)
         self._foils = [n for n, kind in enumerate(self._foil_kinds) if kind in STEERING]
         self._check_linear_fins()
-        self._ranges = [tuple(ends) for ends in self.propulsor_angle_limit]
+        self._ranges = [(least, most) for least, most in self.propulsor_angle_limit]
         self._first_angles = [self._at_rest(number) for number in range(COUNT)]
         self._reaches = [_reach(*thrust) for thrust in thrusts]
         self._fading = [
