@@ -7,6 +7,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from seatrial.devices.sensor import share_of_sample
 from seatrial.links.vehicle_sensors import Sensors, axis, first_of, three
 
 from .frames import TO_ENU, TO_FLU, turned
@@ -55,7 +56,7 @@ class Instruments:
     def covariance(self, key: str, quantity: str, *, world: bool = False) -> list[float]:
         """Return a covariance, row by row, in the axes of ROS; zeros where nothing is known.
 
-        diag(noise^2 + instability^2) of the sensor's own axes, turned to ahead-left-up, or to
+        diag(noise^2 + instability^2) of the sensor's own axes, the noise of a sample, turned to ahead-left-up, or to
         east-north-up for a sensor whose axes are those of the ``world``.
         """
         known = key, quantity
@@ -79,5 +80,7 @@ class Instruments:
     def deviations(self, key: str, quantity: str, count: int = 3) -> list[float]:
         """Return the standard deviations of a quantity: noise and slow error together."""
         sensor = self._of.get(key, {})
-        errors = [sensor.get(f"{quantity}_{kind}", 0.0) for kind in ("noise", "instability")]
-        return [math.hypot(*(axis(error, i) for error in errors)) for i in range(count)]
+        noise, slow = (sensor.get(f"{quantity}_{kind}", 0.0) for kind in ("noise", "instability"))
+        bandwidth = axis(sensor.get(f"{quantity}_bandwidth", 0.0))
+        share = share_of_sample(self.period_ns(key) * 1e-9, bandwidth)
+        return [math.hypot(share * axis(noise, i), axis(slow, i)) for i in range(count)]
