@@ -123,6 +123,13 @@ EXPORTED void batch_set(Batch *batch, const uint8_t *mask, const uint32_t *refer
         if (mask[i]) set_row(batch->copies + i, references, count, values + i * count);
 }
 
+EXPORTED void batch_set_text(Batch *batch, const uint8_t *mask, uint32_t reference, const char *text) {
+    for (int64_t i = 0; i < batch->count; i++) {
+        Copy *copy = batch->copies + i;
+        if (mask[i] && !copy->failed) check(copy, fmi2SetString(copy->rig, &reference, 1, &text));
+    }
+}
+
 /* Override outputs, each copy of the mask with its row of values; NULL: release them. */
 EXPORTED void batch_override(Batch *batch, const uint8_t *mask, const uint32_t *references,
                              int64_t count, const double *values) {

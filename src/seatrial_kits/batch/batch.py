@@ -40,7 +40,8 @@ class Batch:
     ``rig``, ``set``, ``variant``, ``step`` and ``choices`` are those of `seatrial.Simulation`; a
     value of ``set`` may also be an array with a row for each copy. ``seed`` is the first copy's
     (None: the trial's, or 1), the next has the next one, or a sequence with a seed for each.
-    ``threads`` share the copies. Of a trial's faults a copy has those that fix an output.
+    ``threads`` share the copies. Of a trial's faults a copy has those of
+    devices, and outputs that are fixed or stuck.
 
     Copy i has the bytes of a `Simulation` with ``engine="native"``, its seed and its settings, on
     any number of threads. A copy that fails keeps its values and its message (`failures`) and is
@@ -198,10 +199,16 @@ class Batch:
         """Set an input that nothing feeds, or a tunable parameter, from now on.
 
         ``value`` is one for all copies, as `Simulation.set` takes it, or an array with a row for
-        each; ``mask`` (count,) says of which copies. Raises InputError.
+        each; ``mask`` (count,) says of which copies. An input of text, as that of a device's fault,
+        has one text. Raises InputError.
         """
         self._refuse_closed()
-        chosen = self._mask(mask)
+        chosen, text = self._mask(mask), self._settings.text(name)
+        if text is not None:
+            if not isinstance(value, str):
+                raise InputError(f"set: {name} is a text, found {value!r}")
+            self._library.batch_set_text(self._batch, _at(chosen), text, value.encode())
+            return
         references, values = self._settings.running(name, value)
         self._library.batch_set(
             self._batch, _at(chosen), _at(references), len(references), _at(values)

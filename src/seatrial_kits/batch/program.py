@@ -65,6 +65,7 @@ def _loaded(path: Path) -> ctypes.CDLL:
     values: list[Any] = [_POINTER, _POINTER, _POINTER, _COUNT, _POINTER]
     found.batch_start.argtypes = found.batch_set.argtypes = values
     found.batch_override.argtypes = values
+    found.batch_set_text.argtypes = [_POINTER, _POINTER, ctypes.c_uint32, ctypes.c_char_p]
     found.batch_get.argtypes = [_POINTER, _POINTER, _COUNT, _POINTER]
     found.batch_step.argtypes = [_POINTER, _COUNT, _COUNT, _POINTER, _COUNT, _POINTER]
     found.batch_message.restype = ctypes.c_char_p
@@ -78,6 +79,7 @@ def _loaded(path: Path) -> ctypes.CDLL:
         "override",
         "start",
         "set",
+        "set_text",
         "get",
         "step",
         "times",

@@ -81,6 +81,14 @@ class Settings:
                 raise InputError(f"{call}: {whole} is fed by {feeder}, and nothing else sets it")
         return named
 
+    def text(self, name: str) -> int | None:
+        """Return the reference of an input of text that nothing feeds, None of another port."""
+        part, port = self._system.located(name, "set")[0]
+        scalar = part.instance.variables.get(port)
+        if scalar is None or scalar.type is not str or scalar.causality != "input":
+            return None
+        return self._references.get(f"{part.name}.{port}")
+
     # ------------------------------------------------------------------ values
 
     def given(self, name: str, value: Any, call: str) -> dict[str, Floats]:
