@@ -184,10 +184,12 @@ class Recorder:
             for column in self._whole_numbers:
                 row[column] = int(row[column])
         # What the writer makes of numbers, in two thirds of the time.
-        self._write([
-            f"{time!r},{','.join(map(repr, row))}\n".encode()
-            for time, row in zip(times, rows, strict=True)
-        ])
+        self._write(
+            [
+                f"{time!r},{','.join(map(repr, row))}\n".encode()
+                for time, row in zip(times, rows, strict=True)
+            ]
+        )
 
     def watched(self) -> tuple[NDArray[np.float64], dict[str, NDArray[np.float64] | list[str]]]:
         """Return time and watched signals, texts as lists, at every communication step so far."""

@@ -20,6 +20,8 @@ if TYPE_CHECKING:
     from seatrial.trial.files.trial import Trial
     from seatrial_kits.native.surroundings import Met
 
+    from .splitting import Split
+
     Floats = NDArray[np.float64]
 
 MOST_THREADS = 64
@@ -117,15 +119,19 @@ class Batch:
 
         return np.asarray(self._times()[0] * self.step_size, dtype=np.float64)
 
-    def step(self, count: int = 1) -> None:
-        """Let every copy that has not failed take ``count`` communication steps."""
+    def step(self, count: int = 1, mask: ArrayLike | None = None) -> None:
+        """Let the copies of ``mask`` (count,), or all, take ``count`` communication steps.
+
+        Copies that have failed take none. Raises InputError.
+        """
         self._refuse_closed()
+        chosen = self._mask(mask)
         if count < 0:
             raise InputError(f"step: the count is {count}, it cannot be negative")
         before, failed = self._times()
-        while count and not failed.all():
-            ahead = self._course.ahead(before[~failed], count)
-            self._advance(ahead, None, None)
+        while count and (chosen & ~failed).any():
+            ahead = self._course.ahead(before[chosen & ~failed], count)
+            self._advance(ahead, chosen)
             count -= ahead
             before, failed = self._acted(before)
 
@@ -143,7 +149,7 @@ class Batch:
         while count > 0:
             ahead = count if failed.all() else self._course.ahead(before[~failed], count)
             rows = np.full((self.count, ahead, len(references)), np.nan)
-            self._advance(ahead, references, rows)
+            self._advance(ahead, self._mask(None), references, rows)
             count -= ahead
             before, failed = self._acted(before)
             if self._course:  # the last row has what events of its time have made of it
@@ -291,12 +297,19 @@ class Batch:
         return saved
 
     def restore(
-        self, state: BatchState, mask: ArrayLike | None = None, *, source: ArrayLike | None = None
+        self,
+        state: BatchState,
+        mask: ArrayLike | None = None,
+        *,
+        source: ArrayLike | None = None,
+        seed: int | Sequence[int] | None = None,
     ) -> None:
         """Let the copies of ``mask`` (count,), or all, go on from a state that this batch saved.
 
         ``source`` (count,) says from which copy's state each goes on, if not from its own.
-        Parameters and weather come with a state, until the copy starts anew. Raises InputError.
+        Parameters and weather come with a state, until the copy starts anew. ``seed``, as of
+        `Batch`, lets the noise of components from there on be another: copies of one state go ways
+        of their own. Raises InputError.
         """
         import numpy as np
 
@@ -316,6 +329,24 @@ class Batch:
             self._surround(name, chosen, [met[copy] for copy in numbers.tolist()])
         origin = np.where(chosen, numbers, -1).astype(np.int64)
         self._library.batch_restore(self._batch, state.states, _at(origin), _at(state.steps))
+        if seed is not None:
+            references, seeds = self._settings.noise(self._seeds(seed))
+            count = len(references)
+            self._library.batch_reseed(self._batch, _at(chosen), _at(references), count, _at(seeds))
+
+    def split(self, name: str, levels: Sequence[float], until: float, *, seed: int = 1) -> Split:
+        """Return how likely ``name`` rises to the last of rising ``levels`` before ``until``, s.
+
+        Copies go on from now; at each level, those that reach it are split, so that all go on from
+        there with noise of their own: fixed-effort splitting (Garvels 2000, The splitting method in
+        rare event simulation), unbiased for any levels. What is random is the noise of components;
+        weather stays. ``seed`` draws which states are split, and the seeds from there on.
+
+        Raises InputError for bad input, SimulationError for a copy that cannot go on.
+        """
+        from .splitting import split
+
+        return split(self, name, levels, until, seed)
 
     def close(self) -> None:
         """Release the copies; more than once does nothing."""
@@ -342,12 +373,17 @@ class Batch:
     # ------------------------------------------------------------------ inside
 
     def _advance(
-        self, count: int, references: NDArray[np.uint32] | None, rows: Floats | None
+        self,
+        count: int,
+        chosen: NDArray[np.bool_],
+        references: NDArray[np.uint32] | None = None,
+        rows: Floats | None = None,
     ) -> None:
         wanted = 0 if references is None else len(references)
         places = [None if array is None else _at(array) for array in (references, rows)]
         threads = min(self.threads, self.count)
-        self._library.batch_step(self._batch, count, threads, places[0], wanted, places[1])
+        where = self._batch, _at(chosen)
+        self._library.batch_step(*where, count, threads, places[0], wanted, places[1])
 
     def _acted(self, before: NDArray[np.int64]) -> tuple[NDArray[np.int64], NDArray[np.bool_]]:
         """Let events of the copies' times happen; return the steps of each, and which failed."""

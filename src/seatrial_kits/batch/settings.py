@@ -239,6 +239,13 @@ class Settings:
             self._met[key] = surroundings_of(source, values)
         return self._met[key]
 
+    def noise(self, seeds: NDArray[np.int64]) -> tuple[NDArray[np.uint32], Floats]:
+        """Return references and rows of the seeds of components: of their noise, not of weather."""
+        own = self._of_seeds(seeds)
+        return self._stacked(
+            {n: rows for n, rows in own.items() if n not in self._made.weather_seeds}
+        )
+
     def _of_seeds(self, seeds: NDArray[np.int64]) -> dict[str, Floats]:
         """Return the seeds of components, as `give_parameters` derives them from a system's."""
         of_weather = seeds.astype(np.float64)

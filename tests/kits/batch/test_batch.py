@@ -478,7 +478,7 @@ def test_the_fault_of_a_device_is_a_text(rig: Path) -> None:
         batch.set("log.fault", "off", np.array([True, False]))
         batch.step(20)
         assert (batch.get("log.water_velocity.u") != 0.0).tolist() == [False, True]
-        with pytest.raises(InputError, match="set: log.fault is a text, found 1.0"):
+        with pytest.raises(InputError, match=r"set: log\.fault is a text, found 1\.0"):
             batch.set("log.fault", 1.0)
 
 
