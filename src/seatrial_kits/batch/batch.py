@@ -313,18 +313,12 @@ class Batch:
         """
         import numpy as np
 
+        from .per_copy import sources_of
+
         self._refuse_closed()
         if state.batch is not self:
             raise InputError("restore: this is the state of another batch")
-        chosen, numbers = self._mask(mask), np.arange(self.count)
-        if source is not None:
-            numbers = np.asarray(source)
-            is_whole = numbers.shape == (self.count,) and numbers.dtype.kind in "iu"
-            if not is_whole or numbers.min() < 0 or numbers.max() >= self.count:
-                raise InputError(
-                    f"restore: source has shape {numbers.shape} of {numbers.dtype}; {self.count} "
-                    f"numbers of copies, 0 to {self.count - 1}, are needed"
-                )
+        chosen, numbers = self._mask(mask), sources_of(source, self.count)
         for name, met in state.met.items():
             self._surround(name, chosen, [met[copy] for copy in numbers.tolist()])
         origin = np.where(chosen, numbers, -1).astype(np.int64)
@@ -419,28 +413,14 @@ class Batch:
                 self._library.batch_surround(self._batch, copy, node, met[copy] or NOTHING)
 
     def _seeds(self, seed: int | Sequence[int]) -> NDArray[np.int64]:
-        import numpy as np
+        from .per_copy import seeds_of
 
-        given = np.asarray(seed)
-        if given.dtype.kind not in "iu" or given.shape not in ((), (self.count,)):
-            raise InputError(
-                f"seed: found shape {given.shape} of {given.dtype}; one whole number, or "
-                f"{self.count}, are needed"
-            )
-        return given + np.arange(self.count) if given.shape == () else given.astype(np.int64)
+        return seeds_of(seed, self.count)
 
     def _mask(self, mask: ArrayLike | None) -> NDArray[np.bool_]:
-        import numpy as np
+        from .per_copy import mask_of
 
-        if mask is None:
-            return np.ones(self.count, dtype=bool)
-        chosen = np.ascontiguousarray(mask)
-        if chosen.dtype != bool or chosen.shape != (self.count,):
-            raise InputError(
-                f"mask: found shape {chosen.shape} of {chosen.dtype}; {self.count} truths are "
-                "needed"
-            )
-        return chosen
+        return mask_of(mask, self.count)
 
     def _times(self) -> tuple[NDArray[np.int64], NDArray[np.bool_]]:
         import numpy as np
