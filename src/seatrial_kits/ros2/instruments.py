@@ -56,8 +56,8 @@ class Instruments:
     def covariance(self, key: str, quantity: str, *, world: bool = False) -> list[float]:
         """Return a covariance, row by row, in the axes of ROS; zeros where nothing is known.
 
-        diag(noise^2 + instability^2) of the sensor's own axes, the noise of a sample, turned to ahead-left-up, or to
-        east-north-up for a sensor whose axes are those of the ``world``.
+        diag(noise^2 + instability^2) of the sensor's own axes, the noise of a sample, turned to
+        ahead-left-up, or to east-north-up for a sensor whose axes are those of the ``world``.
         """
         known = key, quantity
         if known not in self._covariances:

@@ -1,5 +1,6 @@
-"""Keys among settings of faults, ``faults.0.at`` of a trial, ``faults.NAME.at`` of a campaign, and of
-choices, ``choices.NAME``.
+"""Keys among settings of faults and choices.
+
+``faults.0.at`` of a trial, ``faults.NAME.at`` of a campaign, ``choices.NAME``.
 """
 
 from __future__ import annotations
