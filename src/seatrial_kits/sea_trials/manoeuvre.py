@@ -180,7 +180,7 @@ class Manoeuvre(HelmForRate, Sampled):
         self._turned = self._before = 0.0
         self._number, self._done, self._begun = 0, False, False
         self._ordered_at, self._course, self._fast = -1.0, 0.0, 0.0
-        self._level, self._lasted, self._stopped = 0.0, 0, False
+        self._level, self._lasted, self._fixed, self._stopped = 0.0, 0, False, False
         self._begin_search(0.0)
 
     def sample(self, t: float, k: int) -> None:
@@ -288,7 +288,9 @@ class Manoeuvre(HelmForRate, Sampled):
         latest = (speed, self._turned, rate, self.depth, self.pitch, self._found)
         for name, value in zip(_WATCHED, latest, strict=True):
             self._windows[name] = [*self._windows[name][1 - self._samples :], value]
-        self._stopped = self._stopped or speed <= _SLOWEST
+        # Before the first fix there is no velocity, which is no rest.
+        self._fixed = self._fixed or any(self.velocity_n)
+        self._stopped = self._stopped or (self._fixed and speed <= _SLOWEST)
         self._lasted += 1
 
     def _speed(self) -> float:

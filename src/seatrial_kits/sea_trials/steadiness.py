@@ -27,11 +27,13 @@ def halves(window: list[float], samples: int) -> Halves | None:
 
 
 def noise(window: list[float], samples: int) -> float:
-    """Return twice the standard error of the difference of both means by the noise of the samples.
+    """Return twice the standard error of the difference of both means by the noise of a compass.
 
-    The noise is that of successive differences, which a slow change enters little (von Neumann
-    1941): white noise of variance s^2 has differences of 2 s^2, and means over n samples s^2 / n.
+    The window has rates that are differences of headings over a period p. White noise s of these
+    leaves (h_2 - 2 h_1 + h_0) / (n p) in the difference of two means over n rates, 6^0.5 s / (n p);
+    a rate less the one before has 6^0.5 s / p, and nearly nothing of a slow change (von Neumann
+    1941).
     """
     latest = window[-2 * max(1, samples // 2) :]
     squares = sum((b - a) ** 2 for a, b in pairwise(latest))
-    return 2.0 * math.sqrt(squares / (len(latest) - 1) / (len(latest) // 2))
+    return 2.0 * math.sqrt(squares / (len(latest) - 1)) / (len(latest) // 2)
