@@ -205,7 +205,7 @@ def _of_shares(
     density = spectrum.density(edges)
     energy = 0.5 * (density[1:] + density[:-1]) * np.diff(edges)
     below = np.cumsum(energy * np.repeat(is_dense, _FINE))
-    return np.interp(shares * below[-1], np.append(0.0, below), edges)
+    return np.asarray(np.interp(shares * below[-1], np.append(0.0, below), edges))
 
 
 def together(trains: Sequence[Waves]) -> Waves:
