@@ -178,7 +178,7 @@ def test_the_entry_point_of_a_removed_kit_is_no_error(
     assert "kits: sonar is left out: its package seatrial_kits.sonar is not" in done.stdout
 
 
-@needs_kits("can", "mavlink", "native", "search")
+@needs_kits("gprs")
 def test_a_kit_without_metadata_is_named(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

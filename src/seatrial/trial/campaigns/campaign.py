@@ -13,9 +13,10 @@ from ...errors import InputError, unknown
 from ...plugins import Registry
 from ...system.fault_entry import FaultEntry
 from ...system.files import FileModel, Source, find_file, read_toml, validated
+from ..files.fault_keys import is_choice
 from ..files.limit_entry import LimitEntry
 from ..files.map_entry import MapEntry
-from ..files.trial import Trial, is_choice, load_trial
+from ..files.trial import Trial, load_trial
 from .acceptance import Acceptance, AcceptanceEntry, read_acceptance
 from .case_list import FAULTS, Block, Cases
 from .designs import Design, drawn

@@ -16,7 +16,8 @@ from pathlib import Path, PurePosixPath
 
 from ...errors import InputError
 from ...vehicle_folders import FOLDERS
-from ..files.trial import Trial, is_choice
+from ..files.fault_keys import is_choice
+from ..files.trial import Trial
 from ..records.deciding import deciding_files, files_in, found_by_name, named_in, our_folders
 from ..records.program import program
 from .campaign import Campaign, load_campaign
