@@ -8,11 +8,10 @@ from typing import Any
 from parts import part
 from parts.can import ports
 from parts.markdown import table
-from seatrial_kits.can.dronecan.allocation import Allocation
 from seatrial_kits.can.dronecan.autopilot import DroneCanAutopilot
 from seatrial_kits.can.dronecan.instruments import MagneticField
 from seatrial_kits.can.dronecan.navigation import NOT_CONNECTED
-from seatrial_kits.can.dronecan.node import GetNodeInfo, NodeStatus, RestartNode
+from seatrial_kits.can.dronecan.node import Allocation, GetNodeInfo, NodeStatus, RestartNode
 from seatrial_kits.can.dronecan.parameters import ExecuteOpcode, GetSet
 from seatrial_kits.can.dronecan.peripheral import DroneCanPeripheral
 

@@ -8,6 +8,7 @@ from seatrial.trial.campaigns.in_folders import run_campaign
 from seatrial.trial.campaigns.shipment import packed, unpacked
 from seatrial.trial.records.run_folder import load_run
 from tests.command import seatrial
+from tests.kit import needs_kits
 
 GRID = '[grid]\n"case.number" = [1, 2]\n'
 
@@ -36,6 +37,7 @@ def test_a_change_travels_to_the_workers_of_a_cluster(written, tmp_path):
     assert there.cases()[0].set == {"case.number": 3.0}
 
 
+@needs_kits("sea_trials")
 @pytest.mark.parametrize("key", ["condition", "page"])
 def test_an_unknown_name_of_a_kit_s_part_is_refused(written, key):
     said = f"unknown {key} of campaigns 'sea-trails'; did you mean 'sea-trials'"
@@ -43,11 +45,13 @@ def test_an_unknown_name_of_a_kit_s_part_is_refused(written, key):
         written(f'{key} = "sea-trails"')
 
 
+@needs_kits("sea_trials")
 def test_a_condition_needs_one_rig(written):
     with pytest.raises(InputError, match=r"choices.vehicle: one rig is needed"):
         written('condition = "sea-trials"\n[grid]\n"choices.vehicle" = ["otter", "mariner"]\n')
 
 
+@needs_kits("sea_trials")
 def test_a_page_needs_the_folder_of_every_case(written, tmp_path):
     written('page = "sea-trials"')
     done = seatrial("run", "campaign.toml", "--keep", "none", cwd=tmp_path)

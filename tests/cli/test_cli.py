@@ -12,8 +12,7 @@ from typing import Any
 
 import pytest
 
-from seatrial.cli.commands import commands, loaded
-from seatrial.cli.examples import examples
+from seatrial.cli.commands import commands, examples, loaded
 from seatrial.errors import unknown
 from tests.command import SEATRIAL, seatrial
 
@@ -264,7 +263,7 @@ def test_pages_of_the_documentation(tmp_path: Path) -> None:
     assert seatrial("docs", "otter", cwd=tmp_path).stdout.rstrip() == page.rstrip()
     done = seatrial("docs", "xyzzy", cwd=tmp_path)
     assert done.returncode == 2
-    assert done.stderr.startswith("seatrial: no page matches 'xyzzy'; (known: core, ")
+    assert done.stderr.startswith("seatrial: no page matches 'xyzzy'; (known: bibliography, core, ")
 
 
 def test_it_runs_as_a_module(tmp_path: Path) -> None:

@@ -54,7 +54,7 @@ def test_a_part_that_nobody_commands(change, line, path, what):
     assert list(of_hull) == [f"vehicle.hull.{path}"]
     (note,) = of_hull.values()
     assert note.startswith(f"nothing feeds the command vehicle.hull.{path}: ")
-    assert f"part 1, {what}, rests" in note
+    assert f"part 1, {what}, rests (vehicles/tuna/vehicle.toml [hull])" in note
 
 
 def test_what_a_trial_moves_is_commanded(change):
@@ -134,10 +134,10 @@ def test_a_thruster_without_a_limit(change):
         assemble(load_rig("sil", choices={"vehicle": "cat"}), engine="direct")
 
 
-def test_an_axis_that_the_pilot_needs_and_nobody_asks_for(change):
+def test_an_axis_that_the_pilot_needs_and_nobody_asks_for(change, tmp_path):
     change(PILOT, ('axes = "surge pitch yaw"', 'axes = "surge yaw"'))
     assert system().notes == [
-        "autopilot.pilot.allocation.axes is 'surge yaw': nothing gives pitch, which "
+        f"{tmp_path / PILOT}: components.allocation.set: autopilot.pilot.allocation.axes is 'surge yaw': nothing gives pitch, which "
         "autopilot.pilot.depth_by_pitch.pitch_moment asks for"
     ]
 

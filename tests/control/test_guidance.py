@@ -214,6 +214,32 @@ def test_in_a_weak_current_it_drifts_and_returns():
     assert (min(late), max(late)) == pytest.approx((0.5, 2.0), abs=0.05)
 
 
+@pytest.mark.parametrize("course", [0.0, 1.0, 2.5, math.pi, -2.0])
+def test_a_weather_vane_comes_to_rest_bow_up_where_its_way_back_equals_the_current(course):
+    current = 0.2 * math.cos(course), 0.2 * math.sin(course)
+    found = guidance(mode="hold", staying="weather-vane", approach_gain=0.25)
+    rows = np.array(drive(found, 300.0, current))
+    late = rows[rows[:, 0] > 100.0]
+    leeward = 2.0 + 0.2 / 0.25
+    ends = [leeward * math.cos(course), leeward * math.sin(course)]
+    np.testing.assert_allclose(late[-1, 1:3], ends, atol=1e-6)
+    assert np.hypot(rows[:, 1], rows[:, 2]).max() < leeward + 1e-6
+    upstream = math.remainder(found.get("heading_wanted") - course - math.pi, math.tau)
+    assert upstream == pytest.approx(0.0, abs=1e-6)
+
+
+def test_a_weather_vane_keeps_its_heading_within_the_drift_limit():
+    found = guidance((4.0, -2.0), mode="hold", heading=1.0, staying="weather-vane")
+    found.advance(0.0, 0.1)
+    for off, speed in ((1.9, 0.0), (2.1, 0.03), (1.9, 0.0), (-1.0, 0.0), (3.0, 0.3)):
+        found.set("position_n", [4.0, -2.0 - off, 0.0])
+        before = found.get("heading_wanted") if abs(off) < 2.0 else math.pi / 2
+        found.set("heading", before)
+        assert found.get("speed_wanted") == pytest.approx(speed, abs=1e-12)
+        assert found.get("heading_wanted") == pytest.approx(before)
+        found.advance(0.1, 0.1)
+
+
 @pytest.mark.parametrize("radius", [8.0, -8.0])
 @pytest.mark.parametrize("start", [0.5, 30.0])
 def test_loiters_on_a_circle(radius, start):

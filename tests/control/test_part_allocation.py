@@ -8,8 +8,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.optimize import linprog
 
+from seatrial.control.allocation.allocated_parts import BY_SPEED
 from seatrial.control.allocation.part_allocation import PartAllocation
 from seatrial.errors import InputError
+from seatrial.physics.parts.slots import PROPULSORS
 from tests.devices.running import started
 
 from .allocated import ENDLESS, OSV, ROV, WAMV, allocated, finned, later, slots, wrench
@@ -229,11 +231,20 @@ def test_an_endless_azimuth_goes_round_without_turning_back():
         allocation.advance(0.05 * k, 0.05)
 
 
-def test_one_that_stands_at_an_angle_pushes_along_it():
+@pytest.mark.parametrize("kind", PROPULSORS)
+def test_one_that_stands_at_an_angle_pushes_along_it(kind):
     place = {"thrust": [10, 10], "angle_limit": [math.pi / 2, math.pi / 2]}
-    found = allocated(slots([("azimuth", place)], axes="sway"), sway=4.0)
-    assert found.get("propulsor_order")[0] == pytest.approx(0.4, rel=1e-6)
+    found = allocated(slots([(kind, place)], axes="sway"), sway=4.0)
+    share = math.sqrt(0.4) if kind in BY_SPEED else 0.4
+    assert found.get("propulsor_order")[0] == pytest.approx(share, rel=1e-6)
     assert found.get("propulsor_angle")[0] == pytest.approx(math.pi / 2)
+
+
+@pytest.mark.parametrize("kind", PROPULSORS)
+def test_one_of_any_kind_turns_in_its_range(kind):
+    place = {"thrust": [10, 10], "angle_limit": ENDLESS}
+    found = allocated(slots([(kind, place)], axes="surge sway"), surge=3.0, sway=4.0)
+    assert found.get("propulsor_angle")[0] == pytest.approx(math.atan2(4.0, 3.0), abs=1e-6)
 
 
 # ---------------------------------------------------------------------- what is refused

@@ -18,6 +18,7 @@ from seatrial.fmi.building.bundle import bundle, bundled
 from seatrial.fmi.building.export import build_fmu, fmu_bytes
 from seatrial.fmi.components.source import find_source, shipped_sources
 from seatrial.fmi.loading.load import load_fmu, open_instance
+from tests.kit import needs_kits
 
 from . import boats
 from .conftest import Raw, source
@@ -340,6 +341,7 @@ def test_bad_data_files_are_named(value: str, message: str, write, tmp_path: Pat
         "from seatrial import component\nComponent, Output = component.Component, component.Output",
     ],
 )
+@needs_kits("can")
 @pytest.mark.filterwarnings("ignore::DeprecationWarning")
 def test_modules_travel_by_the_paths_that_they_had(imports: str, write, tmp_path: Path) -> None:
     text = f"""{imports}

@@ -12,7 +12,7 @@ from seatrial_kits.mavlink.missions.plan import read_items, write_items
 from seatrial_kits.mavlink.parameters.file import ParameterFile
 from seatrial_kits.mavlink.signing import Signing
 from seatrial_kits.mavlink.state_file import StateFile
-from seatrial_kits.videoray.decode import describe_stream
+from seatrial_kits.videoray.command_decode import describe_stream
 from seatrial_kits.videoray.stream_file import read_stream
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from seatrial_kits.videoray import registers as csr
-from seatrial_kits.videoray.decode import describe, describe_stream
+from seatrial_kits.videoray.command_decode import describe, describe_stream
 from seatrial_kits.videoray.frame import PRO4, ROV, VRCSR, Frame, encode
 from seatrial_kits.videoray.identity import Identity
 from seatrial_kits.videoray.node import RovNode

@@ -14,9 +14,9 @@ from nmea2000 import NMEA2000Decoder
 from seatrial.trial.files.trial import load_trial
 from seatrial.trial.running.run import run_trial
 from seatrial_kits.can.messages import frame_of
-from seatrial_kits.nmea.nmea2000.ais_reports import report
 from seatrial_kits.nmea.nmea2000.codec import Decoder, Message
 from seatrial_kits.nmea.nmea2000.quantities import READERS
+from seatrial_kits.nmea.nmea2000.traffic import report
 from tests.interop import canboat
 from tests.kits.nmea.nmea2000.network import Network
 from tests.kits.nmea.nmea2000.test_fields_absent import any_value, fields_of

@@ -13,7 +13,17 @@ from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
 KITS = sorted(path.parent.name for path in ROOT.glob("src/seatrial_kits/*/kit.toml"))
-_COPIED = ("src", "tests", "harness", "hil_profiles", "fmus", "docs", "examples", "benchmarks")
+_COPIED = (
+    ".github",
+    "src",
+    "tests",
+    "harness",
+    "hil_profiles",
+    "fmus",
+    "docs",
+    "examples",
+    "benchmarks",
+)
 
 
 def without(folder: Path, kits: Iterable[str]) -> Path:

@@ -15,6 +15,7 @@ NATIVE = [
     "bluerov2-course-box",
     "bluerov2-drive",
     "collision",
+    "dive",
     "glide",
     "gloria-backstepping-0",
     "gloria-backstepping-135",
@@ -62,6 +63,7 @@ NATIVE = [
     "otter-course-square",
     "otter-full-ahead",
     "otter-straight",
+    "supply-ship-station",
     "thruster-ship-combined",
     "thruster-ship-load",
     "thruster-ship-load-fivefold",
@@ -96,6 +98,7 @@ NATIVE = [
     "videoray-surface-table81-surge",
     "videoray-surface-table81-sway",
     "videoray-surface-table81-yaw",
+    "wam-v-course",
 ]
 """Found by running all shipped trials with ``--engine native``."""
 

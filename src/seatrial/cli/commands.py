@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import tomllib
 from collections.abc import Mapping
+from functools import cache
+from pathlib import Path
 from pkgutil import resolve_name
 from typing import Any, NamedTuple
 
@@ -23,55 +26,14 @@ class Command(NamedTuple):
     """The first line of the function's docstring."""
 
 
-COMMANDS = {
-    "run": Command(
-        "seatrial.cli.run:run",
-        "Run a trial, a campaign of trials, or a vehicle that sets out, and say what holds.",
-    ),
-    "convergence": Command(
-        "seatrial.cli.convergence:convergence",
-        "Halve a trial's communication step: order and error of each output; status 1 if erratic.",
-    ),
-    "list": Command(
-        "seatrial.cli.listing:list_all",
-        "List trials, campaigns, rigs, vehicles, profiles, experiments and FMUs by name.",
-    ),
-    "describe": Command(
-        "seatrial.cli.describe:describe",
-        "Show a rig's components, inner rigs, connections, and open inputs.",
-    ),
-    "move-vehicle": Command(
-        "seatrial.cli.move_vehicle:move",
-        "Move the files of a vehicle below the current folder into harness/vehicles/NAME.",
-    ),
-    "new": Command("seatrial.cli.new:new_app", "Write the files of a vehicle of your own."),
-    "report": Command("seatrial.cli.report:report", "Write the report of a run again."),
-    "compare": Command(
-        "seatrial.cli.compare:compare",
-        "Compare two runs or two campaigns; status 1 if signals differ, or a verdict goes to fail.",
-    ),
-    "log": Command(
-        "seatrial.cli.log:log",
-        "Show the channels of a log: units, rates, ranges, gaps, and the quantities they serve.",
-    ),
-    "doctor": Command(
-        "seatrial.cli.doctor:doctor",
-        "Check this machine: working parts, missing parts, and remedies.",
-    ),
-    "docs": Command(
-        "seatrial.cli.pages:docs",
-        "List the pages of the documentation, or print the page that is named.",
-    ),
-    "fmu": Command("seatrial.cli.fmu:fmu_app", "List, build, check, describe and survey FMUs."),
-    "profile": Command(
-        "seatrial.cli.profile:profile_app", "Check and describe profiles of electronics."
-    ),
-}
+@cache
+def _own() -> dict[str, Any]:
+    return tomllib.loads(Path(__file__).with_name("commands.toml").read_text("utf-8"))
 
 
 def commands() -> dict[str, Command]:
     """Return every command by name; of a name that two have, the first: `loaded` refuses it."""
-    found = dict(COMMANDS)
+    found = {n: Command(row["call"], row["help"]) for n, row in _own()["commands"].items()}
     for entry in kits().entries("commands"):
         found.setdefault(entry.name, Command(entry.target, entry.text))
     return {name: found[name] for name in sorted(found, key=_place)}
@@ -126,11 +88,16 @@ def loaded(name: str) -> Any:
     else:
         parent.command(name)(found)
     from .answer import with_options
-    from .examples import examples
 
     return _with_examples(
         with_options(typer.main.get_group(parent).commands[name]), name, examples()
     )
+
+
+def examples() -> dict[str, str]:
+    """Return an example by command, its group first."""
+    of_kits = {name: text for kit in kits().found for name, text in kit.examples.items()}
+    return {**_own()["examples"], **of_kits}
 
 
 def _with_examples(command: Any, path: str, examples: Mapping[str, str]) -> Any:

@@ -20,8 +20,9 @@ from ..system.paths import joined, split_axis
 from ..system.rig import Rig, Scope
 from ..system.system import Joint, System
 from ..system.unread import leave_out_unread
+from ..trial.files.fault_keys import choices_in
 from ..trial.files.naming import by_path, named_components
-from ..trial.files.trial import choices_in, is_trial, load_trial
+from ..trial.files.trial import is_trial, load_trial
 from ..trial.reports.diagram import MOST_DRAWN, diagram
 from ..whole_file import write_whole
 from .answer import answer

@@ -38,6 +38,9 @@ from .terminals import print_proposals, print_terminals
 
 fmu_app = typer.Typer(no_args_is_help=True, pretty_exceptions_enable=False)
 
+_UNCHECKED = (
+    "the FMUs do not check what their host does, and run below folders with plain ASCII names only"
+)
 _WIDEST_NAME = 40
 """Of the column of names, in characters, where a terminal has not the width for all columns."""
 
@@ -101,46 +104,42 @@ def build(
     if platforms and standalone:
         raise InputError("--platforms: --standalone FMUs are for Linux on x86-64 alone")
     changes = changes_of(settings, choices, vehicle, autopilot)
+    wanted = checked_platforms(platforms) if platforms else []
     if rig is not None:
-        for option, given in {"FMU": names, "--parameters": parameters, "--osp": osp}.items():
-            if given:
-                raise InputError(f"--rig: a rig has no {option} of its own")
-        wanted = checked_platforms(platforms) if platforms else []
-        whole = service("interchange.rig_build")(
-            rig, changes, variant, 1 if seed is None else seed, version
-        )
-        answer.result["files"] = [str(whole.build(out, carrier, wanted))]
+        _refuse_with_rig({"FMU": names, "--parameters": parameters, "--osp": osp})
+        of_rig = (rig, changes, variant, 1 if seed is None else seed, version)
+        built = service("interchange.rig_build")(*of_rig).build(out, carrier, wanted)
+        answer.result["files"] = [str(built)]
         return
     if changes or seed is not None:
         raise InputError("--set, --choose, --vehicle, --autopilot and --seed are of --rig")
-    default = "linux64" if native or version == 3 else ""
-    targets = checked_platforms(platforms or default) if platforms or default else []
-    if not native and not standalone and not targets and (why := why_unchecked()):
-        print_notes(
-            [
-                "the FMUs do not check what their host does, and run below folders with plain "
-                f"ASCII names only: {why}"
-            ]
-        )
+    targets = wanted or (checked_platforms("linux64") if native or version == 3 else [])
+    if not carrier and not targets and (why := why_unchecked()):
+        print_notes([f"{_UNCHECKED}: {why}"])
     for name in names or _default_names(native):
         source = _buildable(name)
         values = _start_values(source, parameters, variant) if parameters else None
-        path = out / f"{source.name}.fmu"
-        _write_fmu(source, path, carrier, version, targets, values)
+        path = _write_fmu(source, out, carrier, version, targets, values)
         answer.result.setdefault("files", []).append(str(path))
-        console.print(f"{path}  ({path.stat().st_size / 1000:.0f} kB)", soft_wrap=True)
         if osp:
             _write_osp(source, out)
 
 
+def _refuse_with_rig(options: Mapping[str, object]) -> None:
+    for option, given in options.items():
+        if given:
+            raise InputError(f"--rig: a rig has no {option} of its own")
+
+
 def _write_fmu(
     source: ComponentSource,
-    path: Path,
+    folder: Path,
     carrier: str,
     version: int,
     targets: Sequence[str],
     values: dict[str, Value] | None,
-) -> None:
+) -> Path:
+    path = folder / f"{source.name}.fmu"
     if carrier == "native":
         service("native.build_native_fmu")(source, path, targets, values, version=version)
     elif carrier == "standalone":
@@ -148,6 +147,8 @@ def _write_fmu(
         print_notes([f"{path} runs on Linux on x86-64 with glibc {glibc} or newer"])
     else:
         build_fmu(source, path, values, version, targets)
+    console.print(f"{path}  ({path.stat().st_size / 1000:.0f} kB)", soft_wrap=True)
+    return path
 
 
 def _version(text: str) -> int:

@@ -66,6 +66,10 @@ from .stopping import stoppable
 from .twice import exit_unless, repeat
 from .watch import Watch
 
+_OF_CAMPAIGNS = (
+    "--jobs, --resume, --rerun-changed, --keep and --cluster work with a campaign; a trial is one "
+    "run"
+)
 _WITH_LIVE = "--port, --open and --live-control go with --live"
 
 
@@ -109,8 +113,8 @@ def run(
     _allow(hardware, network, keep_going, twice)
     limits = limits_of(limit or [], "--limit")
     changes = changes_of(settings, choices, vehicle, autopilot)
-    pace = {"factor": real_time, "overrun": overrun}
-    pace = {key: value for key, value in pace.items() if value is not None}
+    paced = {"factor": real_time, "overrun": overrun}.items()
+    pace = {key: value for key, value in paced if value is not None}
     page = service("live.page_of")(port, open_, hardware, live_control) if live else None
     _refuse_first({_WITH_LIVE: not live and (port or open_ or live_control)})
     leaves = Leaves(junit, not no_report)
@@ -130,8 +134,7 @@ def run(
         run_cases(campaign, out, how, leaves)
         return
     if jobs is not None or resume or rerun_changed or keep or cluster:
-        said = "--jobs, --resume, --rerun-changed, --keep and --cluster"
-        raise InputError(f"{said} work with a campaign; a trial is one run")
+        raise InputError(_OF_CAMPAIGNS)
     trial, changes = with_vehicle(trial, changes)
     loaded = load_trial(trial, changes=changes, origin="--set")
     loaded = loaded.failing([read_fault(text, "--fault") for text in faults or []], "--fault")

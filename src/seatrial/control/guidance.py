@@ -23,6 +23,10 @@ PILOTED = MappingProxyType(
 """Modes under manual control, and whether heading and depth are held in them."""
 MODES = (*PILOTED, *TASKS, "surface")
 """Values of the input ``mode``."""
+STAYING = ("rest", "weather-vane", "circle", "proceed")
+"""Ways to stay at a point."""
+RESTING = STAYING[:2]
+"""Those of a craft that can stop."""
 
 
 class _Guided(NamedTuple):
@@ -79,11 +83,13 @@ class Guidance(GuidanceOrders):
 
     **Staying.** With ``staying`` = rest the craft, which may have no sway control, does nothing
     within ``drift_limit``; beyond, it heads for the point at ``approach_gain`` times the
-    distance, until within ``capture_radius``. With ``circle``, for a craft that cannot stop,
-    it circles as in loiter, also by line of sight: clockwise for a positive radius. A leg's
-    ``leg_circle`` asks for a circle at its end. ``proceed`` is for a ship: as circle, but where
-    there is no place to stay at (hold, guided without a set-point, auto without a leg) it keeps
-    the heading wanted last, or its own.
+    distance, until within ``capture_radius``. With ``weather-vane`` it heads for the point
+    from ``drift_limit`` on, at ``approach_gain`` times the distance beyond, and not further in:
+    a pendulum that wind and current swing to leeward of the point, where it lies bow up. With
+    ``circle``, for a craft that cannot stop, it circles as in loiter, also by line of sight:
+    clockwise for a positive radius. A leg's ``leg_circle`` asks for a circle at its end.
+    ``proceed`` is for a ship: as circle, but where there is no place to stay at (hold, guided
+    without a set-point, auto without a leg) it keeps the heading wanted last, or its own.
 
     **Speed.** What is wanted times max(turning_speed, cos(heading error)): a craft that turns on
     the spot slows down to turn (turning_speed = 0), one that needs steerage does not (1).
@@ -125,9 +131,7 @@ class Guidance(GuidanceOrders):
     approach_gain = Parameter(
         0.3, "1/s", "speed per distance when it goes back", min=0.0, tunable=True
     )
-    staying = Parameter(
-        "rest", "1", "how it stays at a point", choices=("rest", "circle", "proceed")
-    )
+    staying = Parameter("rest", "1", "how it stays at a point", choices=STAYING)
     turn_rate = Parameter(0.4, "rad/s", "turn of a heading held at full deflection", tunable=True)
     dive_rate = Parameter(0.2, "m/s", "change of a depth held at full deflection", tunable=True)
     depth_control = Parameter("off", "1", "whether it dives", choices=("off", "on"))
@@ -188,7 +192,7 @@ class Guidance(GuidanceOrders):
     def reset(self, t: float) -> None:
         """Start with nothing wanted; raises InputError for radii that do not go together."""
         super().reset(t)
-        if self.staying != "rest" and self.loiter_radius == 0.0:
+        if self.staying not in RESTING and self.loiter_radius == 0.0:
             raise InputError(
                 f"{self.name}: loiter_radius is 0.0 m, staying = {self.staying} needs another"
             )
@@ -277,11 +281,18 @@ class Guidance(GuidanceOrders):
     # ------------------------------------------------------------------ what the craft can do
 
     def _law(self) -> Law:
-        gain, tolerance = self.approach_gain, self.depth_tolerance
-        return super()._law()._replace(approach_gain=gain, depth_tolerance=tolerance)
+        return (
+            super()
+            ._law()
+            ._replace(
+                approach_gain=self.approach_gain,
+                depth_tolerance=self.depth_tolerance,
+                vanes=self.staying == "weather-vane",
+            )
+        )
 
     def _circle(self) -> float:
-        radius: float = 0.0 if self.staying == "rest" else self.loiter_radius
+        radius: float = 0.0 if self.staying in RESTING else self.loiter_radius
         return radius
 
     def _cruise(self) -> float:

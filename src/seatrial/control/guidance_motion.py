@@ -46,6 +46,8 @@ class Law(NamedTuple):
     capture_radius: float
     approach_gain: float = math.inf
     depth_tolerance: float = math.inf
+    vanes: bool = False
+    """Whether it stays at the drift limit, with its bow to the point, once it drifts so far."""
 
 
 class Past(NamedTuple):
@@ -101,6 +103,10 @@ def _stay(goal: Goal, law: Law, here: Point, past: Past) -> Command:
     if goal.circle:
         offset = from_circle(goal.end, goal.circle, here)
         return _led(offset, law, past, Command(STAY, 0.0, goal.speed, depth, off))
+    if law.vanes:
+        beyond = max(off - law.drift_limit, 0.0)
+        heading = bearing(here, goal.end) if beyond else past.heading
+        return Command(STAY, heading, min(goal.speed, law.approach_gain * beyond), depth, off)
     if off <= (law.capture_radius if past.away else law.drift_limit):
         return Command(STAY, past.heading, 0.0, depth, off)
     speed = min(goal.speed, law.approach_gain * off)

@@ -171,8 +171,7 @@ class Sensor(Noise, Fallible, Sampled):
         """Return the noise of a sample, of that which is stated."""
         if port.bandwidth is None:
             return 1.0
-        bandwidth: float = getattr(self, f"{port.name}_bandwidth")
-        return 1.0 / math.sqrt(2.0 * self.period * bandwidth) if bandwidth else 1.0
+        return share_of_sample(self.period, getattr(self, f"{port.name}_bandwidth"))
 
     def _most(self, port: Measured) -> float:
         """Return the largest reading of an axis, 0 where there is no limit."""
@@ -293,6 +292,15 @@ def _faulty(fault: Written, axis: int, normal: float, x: float, moment: Moment) 
             operator = Deviation(tuple(fault.settings["coefficients"]))
     value: float = operator.value(None, x, moment)
     return value
+
+
+def share_of_sample(period: float, bandwidth: float) -> float:
+    """Return the noise of a sample over that stated for a bandwidth, Hz; ``period`` in s.
+
+    White noise of a density N is N sqrt(bandwidth) as stated, and N sqrt(1 / (2 period)) in
+    samples; 1 without a bandwidth.
+    """
+    return 1.0 / math.sqrt(2.0 * period * bandwidth) if bandwidth else 1.0
 
 
 def _held(value: float, most: float) -> float:

@@ -6,6 +6,7 @@ import datetime
 import re
 
 from ..errors import InputError
+from ..model.component import Parameter
 
 _VERSION = re.compile(r"\d{1,3}\.\d{1,3}\.\d{1,3}(-(dev|alpha|beta|rc))?")
 _EPOCH = datetime.datetime(1970, 1, 1, tzinfo=datetime.UTC)
@@ -14,7 +15,7 @@ _NAME = re.compile(r"[!-~]{1,10}")
 
 def whole_number(name: str, value: float) -> int:
     """Return a parameter that must be a whole number as one; raise InputError."""
-    if value != round(value):
+    if value % 1.0:
         raise InputError(f"{name} is {value!r}, a whole number is needed")
     return round(value)
 
@@ -51,6 +52,12 @@ def start_us(date: str) -> int:
             "'2026-02-05T12:00:00Z'"
         )
     return (start - _EPOCH) // datetime.timedelta(microseconds=1)
+
+
+def start_date(day: str = "2026-01-01") -> Parameter:
+    """Return the parameter ``date`` of a component."""
+    meaning = "UTC at the start of the run: a day, for its midnight, or an instant"
+    return Parameter(day, "1", meaning, check=start_us, role="start-time")
 
 
 def value_names(text: str, most: int) -> list[str]:

@@ -11,6 +11,7 @@ from ..model.component import Component, Parameter
 from ..model.expressions import Vector
 
 _POWERS = (1, 3, 5, 7, 9)
+COEFFICIENTS = tuple(f"c{power}" for power in _POWERS)
 _ROWS = 2001
 T200_BENCHMARK = (8.9, 176.0, -404.1, 389.9, -140.3)
 """von Benzon et al., J. Mar. Sci. Eng. 2022, 10, 1898, eq. 18: a BlueROV2's T200, N."""
@@ -23,7 +24,7 @@ class ThrustCurve(Component):
         T200_BENCHMARK,
         "N",
         "coefficients of the thrust by powers of the command",
-        axes=tuple(f"c{power}" for power in _POWERS),
+        axes=COEFFICIENTS,
     )
 
     def thrust_of(self, command: float) -> float:
@@ -39,12 +40,17 @@ class ThrustCurve(Component):
         return bool(_rising(tuple(self.thrust_curve))[1][1] > 0.0)
 
     def command_of(self, thrust: float) -> float:
-        """Return the command of a thrust, N, up to where the thrust no longer rises.
+        """Return the command of a thrust, N; see `command_of`."""
+        return command_of(tuple(self.thrust_curve), thrust)
 
-        From a table of 2001 rows, within 2e-5 N for a T200.
-        """
-        commands, thrusts = _rising(tuple(self.thrust_curve))
-        return math.copysign(float(np.interp(abs(thrust), thrusts, commands)), thrust)
+
+def command_of(coefficients: tuple[float, ...], thrust: float) -> float:
+    """Return the command of a thrust, N, up to where the thrust no longer rises.
+
+    ``coefficients`` are (c1, c3, c5, c7, c9). From a table of 2001 rows, within 2e-5 N for a T200.
+    """
+    commands, thrusts = _rising(coefficients)
+    return math.copysign(float(np.interp(abs(thrust), thrusts, commands)), thrust)
 
 
 @lru_cache

@@ -184,9 +184,11 @@ def unasked(system: System) -> list[str]:
             continue
         axes = str(_value(part, "axes", axis))
         if axis not in axes.split() and _asks(system, connection):
+            origin = part.given["axes"].origin if "axes" in part.given else ""
+            file = origin.removesuffix(f": {name}.axes")
             notes.append(
-                f"{name}.axes is {axes!r}: nothing gives {axis}, which "
-                f"{'.'.join(connection.source)} asks for"
+                f"{file}{': ' if file else ''}{name}.axes is {axes!r}: nothing gives {axis}, "
+                f"which {'.'.join(connection.source)} asks for"
             )
     return notes
 

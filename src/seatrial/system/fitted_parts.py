@@ -50,7 +50,10 @@ def uncommanded(system: System, moved: Container[str] = ()) -> dict[str, str]:
             others = path in moved or f"{name}.{port}" in moved or scalar in part.given
             if (name, scalar) in fed or others or not _moves(part, port, number):
                 continue
-            notes[path] = f"nothing feeds the command {path}: {sort}, part {number}, {kind}, rests"
+            origin = part.given[sort].origin if sort in part.given else name
+            notes[path] = (
+                f"nothing feeds the command {path}: {sort}, part {number}, {kind}, rests ({origin})"
+            )
     return notes
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import ClassVar
 
-from seatrial.links.parameter_validation import start_us
+from seatrial.links.parameter_validation import start_date
 from seatrial.links.safe_state import UNSET, safe_state_bytes
 from seatrial.model.component import (
     Component,
@@ -110,13 +110,7 @@ class ArduinoPorts(Reachable, Component):
     latitude = Parameter(0.0, "rad", "of the home, WGS 84", min=-1.5707964, max=1.5707964)
     longitude = Parameter(0.0, "rad", "of the home, WGS 84", min=-3.1415927, max=3.1415927)
     altitude = Parameter(0.0, "m", "of the home")
-    date = Parameter(
-        "2026-01-01",
-        "1",
-        "UTC at the start of the run: a day, for its midnight, or an instant",
-        check=start_us,
-        role="start-time",
-    )
+    date = start_date()
     supply_min = Parameter(
         3.7, "V", "supply below which it is off: reset at 2.7 V behind a regulator", min=0.0
     )

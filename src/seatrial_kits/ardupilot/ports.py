@@ -7,7 +7,7 @@ from typing import ClassVar
 
 from seatrial.errors import InputError
 from seatrial.links.endpoints.url import check_urls
-from seatrial.links.parameter_validation import start_us
+from seatrial.links.parameter_validation import start_date
 from seatrial.links.servos import read_servos
 from seatrial.links.truth import MOTION, TrueMotion
 from seatrial.links.vehicle_sensors import read_instruments
@@ -70,13 +70,7 @@ class ArduPilotPorts(Logging, Reachable, TrueMotion):
         "the vehicle's sensors, of which its simulated ones follow: JSON; empty: its own",
         check=read_instruments,
     )
-    date = Parameter(
-        "2026-01-01",
-        "1",
-        "UTC at the start of the run: a day, for its midnight, or an instant",
-        check=start_us,
-        role="start-time",
-    )
+    date = start_date()
     latitude = Parameter(0.0, "rad", "of the origin, WGS 84", min=-1.5707964, max=1.5707964)
     longitude = Parameter(0.0, "rad", "of the origin, WGS 84", min=-math.pi, max=math.pi)
     altitude = Parameter(0.0, "m", "of the origin")

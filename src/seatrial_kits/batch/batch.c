@@ -40,6 +40,7 @@ typedef struct { /* what one thread does, for copies from `first`, before `last`
     Batch *batch;
     Work *work;
     int64_t first, last, steps;
+    const uint8_t *mask; /* of the copies that step */
     const uint32_t *references;
     int64_t count;
     double *rows; /* of each copy `steps` rows of `count` values; NULL: none is kept */
@@ -123,6 +124,13 @@ EXPORTED void batch_set(Batch *batch, const uint8_t *mask, const uint32_t *refer
         if (mask[i]) set_row(batch->copies + i, references, count, values + i * count);
 }
 
+EXPORTED void batch_set_text(Batch *batch, const uint8_t *mask, uint32_t reference, const char *text) {
+    for (int64_t i = 0; i < batch->count; i++) {
+        Copy *copy = batch->copies + i;
+        if (mask[i] && !copy->failed) check(copy, fmi2SetString(copy->rig, &reference, 1, &text));
+    }
+}
+
 /* Override outputs, each copy of the mask with its row of values; NULL: release them. */
 EXPORTED void batch_override(Batch *batch, const uint8_t *mask, const uint32_t *references,
                              int64_t count, const double *values) {
@@ -137,6 +145,14 @@ EXPORTED void batch_get(Batch *batch, const uint32_t *references, int64_t count,
         Copy *copy = batch->copies + i;
         check(copy, rig_read(copy->rig, references, (size_t)count, values + i * count));
     }
+}
+
+/* Let noise from now on be that of other seeds, each copy of the mask with its row. */
+EXPORTED void batch_reseed(Batch *batch, const uint8_t *mask, const uint32_t *references,
+                           int64_t count, const double *seeds) {
+    for (int64_t i = 0; i < batch->count; i++)
+        for (int64_t k = 0; k < count && mask[i]; k++)
+            rig_reseed(batch->copies[i].rig, references[k], seeds[i * count + k]);
 }
 
 /* ------------------------------------------------------------------ life */
@@ -173,8 +189,8 @@ static void *worked(void *given) {
     const double h = (double)(share->steps * STEP_NS) / 1e9;
     for (int64_t i = share->first; i < share->last; i++) {
         Copy *copy = share->batch->copies + i;
-        if (i + 1 < share->last) rig_fetch(copy[1].rig);
-        if (copy->failed) continue;
+        if (i + 1 < share->last && share->mask[i + 1]) rig_fetch(copy[1].rig);
+        if (copy->failed || !share->mask[i]) continue;
         rig_lend(copy->rig, share->work);
         if (share->rows) {
             record(share, i);
@@ -187,9 +203,10 @@ static void *worked(void *given) {
     return NULL;
 }
 
-/* Let copies take steps; `rows`, if it is not NULL, gets `count` values after each, copy by copy. */
-EXPORTED void batch_step(Batch *batch, int64_t steps, int64_t threads, const uint32_t *references,
-                         int64_t count, double *rows) {
+/* Let copies of the mask take steps; `rows`, if it is not NULL, gets `count` values after each, copy
+   by copy. */
+EXPORTED void batch_step(Batch *batch, const uint8_t *mask, int64_t steps, int64_t threads,
+                         const uint32_t *references, int64_t count, double *rows) {
     Share shares[MOST_THREADS];
 #if defined(_WIN32)
     threads = 1;
@@ -203,7 +220,7 @@ EXPORTED void batch_step(Batch *batch, int64_t steps, int64_t threads, const uin
         shares[k].work = batch->works[k];
     }
     for (int64_t k = 0; k < threads; k++) {
-        shares[k].batch = batch, shares[k].steps = steps;
+        shares[k].batch = batch, shares[k].mask = mask, shares[k].steps = steps;
         shares[k].references = references, shares[k].count = count, shares[k].rows = rows;
         shares[k].first = batch->count * k / threads;
         shares[k].last = batch->count * (k + 1) / threads;

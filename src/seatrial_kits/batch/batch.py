@@ -20,6 +20,8 @@ if TYPE_CHECKING:
     from seatrial.trial.files.trial import Trial
     from seatrial_kits.native.surroundings import Met
 
+    from .splitting import Split
+
     Floats = NDArray[np.float64]
 
 MOST_THREADS = 64
@@ -40,7 +42,8 @@ class Batch:
     ``rig``, ``set``, ``variant``, ``step`` and ``choices`` are those of `seatrial.Simulation`; a
     value of ``set`` may also be an array with a row for each copy. ``seed`` is the first copy's
     (None: the trial's, or 1), the next has the next one, or a sequence with a seed for each.
-    ``threads`` share the copies. Of a trial's faults a copy has those that fix an output.
+    ``threads`` share the copies. Of a trial's faults a copy has those of
+    devices, and outputs that are fixed or stuck.
 
     Copy i has the bytes of a `Simulation` with ``engine="native"``, its seed and its settings, on
     any number of threads. A copy that fails keeps its values and its message (`failures`) and is
@@ -116,15 +119,19 @@ class Batch:
 
         return np.asarray(self._times()[0] * self.step_size, dtype=np.float64)
 
-    def step(self, count: int = 1) -> None:
-        """Let every copy that has not failed take ``count`` communication steps."""
+    def step(self, count: int = 1, mask: ArrayLike | None = None) -> None:
+        """Let the copies of ``mask`` (count,), or all, take ``count`` communication steps.
+
+        Copies that have failed take none. Raises InputError.
+        """
         self._refuse_closed()
+        chosen = self._mask(mask)
         if count < 0:
             raise InputError(f"step: the count is {count}, it cannot be negative")
         before, failed = self._times()
-        while count and not failed.all():
-            ahead = self._course.ahead(before[~failed], count)
-            self._advance(ahead, None, None)
+        while count and (chosen & ~failed).any():
+            ahead = self._course.ahead(before[chosen & ~failed], count)
+            self._advance(ahead, chosen)
             count -= ahead
             before, failed = self._acted(before)
 
@@ -142,7 +149,7 @@ class Batch:
         while count > 0:
             ahead = count if failed.all() else self._course.ahead(before[~failed], count)
             rows = np.full((self.count, ahead, len(references)), np.nan)
-            self._advance(ahead, references, rows)
+            self._advance(ahead, self._mask(None), references, rows)
             count -= ahead
             before, failed = self._acted(before)
             if self._course:  # the last row has what events of its time have made of it
@@ -198,10 +205,16 @@ class Batch:
         """Set an input that nothing feeds, or a tunable parameter, from now on.
 
         ``value`` is one for all copies, as `Simulation.set` takes it, or an array with a row for
-        each; ``mask`` (count,) says of which copies. Raises InputError.
+        each; ``mask`` (count,) says of which copies. An input of text, as that of a device's fault,
+        has one text. Raises InputError.
         """
         self._refuse_closed()
-        chosen = self._mask(mask)
+        chosen, text = self._mask(mask), self._settings.text(name)
+        if text is not None:
+            if not isinstance(value, str):
+                raise InputError(f"set: {name} is a text, found {value!r}")
+            self._library.batch_set_text(self._batch, _at(chosen), text, value.encode())
+            return
         references, values = self._settings.running(name, value)
         self._library.batch_set(
             self._batch, _at(chosen), _at(references), len(references), _at(values)
@@ -284,31 +297,50 @@ class Batch:
         return saved
 
     def restore(
-        self, state: BatchState, mask: ArrayLike | None = None, *, source: ArrayLike | None = None
+        self,
+        state: BatchState,
+        mask: ArrayLike | None = None,
+        *,
+        source: ArrayLike | None = None,
+        seed: int | Sequence[int] | None = None,
     ) -> None:
         """Let the copies of ``mask`` (count,), or all, go on from a state that this batch saved.
 
         ``source`` (count,) says from which copy's state each goes on, if not from its own.
-        Parameters and weather come with a state, until the copy starts anew. Raises InputError.
+        Parameters and weather come with a state, until the copy starts anew. ``seed``, as of
+        `Batch`, lets the noise of components from there on be another: copies of one state go ways
+        of their own. Raises InputError.
         """
         import numpy as np
+
+        from .per_copy import sources_of
 
         self._refuse_closed()
         if state.batch is not self:
             raise InputError("restore: this is the state of another batch")
-        chosen, numbers = self._mask(mask), np.arange(self.count)
-        if source is not None:
-            numbers = np.asarray(source)
-            is_whole = numbers.shape == (self.count,) and numbers.dtype.kind in "iu"
-            if not is_whole or numbers.min() < 0 or numbers.max() >= self.count:
-                raise InputError(
-                    f"restore: source has shape {numbers.shape} of {numbers.dtype}; {self.count} "
-                    f"numbers of copies, 0 to {self.count - 1}, are needed"
-                )
+        chosen, numbers = self._mask(mask), sources_of(source, self.count)
         for name, met in state.met.items():
             self._surround(name, chosen, [met[copy] for copy in numbers.tolist()])
         origin = np.where(chosen, numbers, -1).astype(np.int64)
         self._library.batch_restore(self._batch, state.states, _at(origin), _at(state.steps))
+        if seed is not None:
+            references, seeds = self._settings.noise(self._seeds(seed))
+            count = len(references)
+            self._library.batch_reseed(self._batch, _at(chosen), _at(references), count, _at(seeds))
+
+    def split(self, name: str, levels: Sequence[float], until: float, *, seed: int = 1) -> Split:
+        """Return how likely ``name`` rises to the last of rising ``levels`` before ``until``, s.
+
+        Copies go on from now; at each level, those that reach it are split, so that all go on from
+        there with noise of their own: fixed-effort splitting (Garvels 2000, The splitting method in
+        rare event simulation), unbiased for any levels. What is random is the noise of components;
+        weather stays. ``seed`` draws which states are split, and the seeds from there on.
+
+        Raises InputError for bad input, SimulationError for a copy that cannot go on.
+        """
+        from .splitting import split
+
+        return split(self, name, levels, until, seed)
 
     def close(self) -> None:
         """Release the copies; more than once does nothing."""
@@ -335,12 +367,17 @@ class Batch:
     # ------------------------------------------------------------------ inside
 
     def _advance(
-        self, count: int, references: NDArray[np.uint32] | None, rows: Floats | None
+        self,
+        count: int,
+        chosen: NDArray[np.bool_],
+        references: NDArray[np.uint32] | None = None,
+        rows: Floats | None = None,
     ) -> None:
         wanted = 0 if references is None else len(references)
         places = [None if array is None else _at(array) for array in (references, rows)]
         threads = min(self.threads, self.count)
-        self._library.batch_step(self._batch, count, threads, places[0], wanted, places[1])
+        where = self._batch, _at(chosen)
+        self._library.batch_step(*where, count, threads, places[0], wanted, places[1])
 
     def _acted(self, before: NDArray[np.int64]) -> tuple[NDArray[np.int64], NDArray[np.bool_]]:
         """Let events of the copies' times happen; return the steps of each, and which failed."""
@@ -376,28 +413,14 @@ class Batch:
                 self._library.batch_surround(self._batch, copy, node, met[copy] or NOTHING)
 
     def _seeds(self, seed: int | Sequence[int]) -> NDArray[np.int64]:
-        import numpy as np
+        from .per_copy import seeds_of
 
-        given = np.asarray(seed)
-        if given.dtype.kind not in "iu" or given.shape not in ((), (self.count,)):
-            raise InputError(
-                f"seed: found shape {given.shape} of {given.dtype}; one whole number, or "
-                f"{self.count}, are needed"
-            )
-        return given + np.arange(self.count) if given.shape == () else given.astype(np.int64)
+        return seeds_of(seed, self.count)
 
     def _mask(self, mask: ArrayLike | None) -> NDArray[np.bool_]:
-        import numpy as np
+        from .per_copy import mask_of
 
-        if mask is None:
-            return np.ones(self.count, dtype=bool)
-        chosen = np.ascontiguousarray(mask)
-        if chosen.dtype != bool or chosen.shape != (self.count,):
-            raise InputError(
-                f"mask: found shape {chosen.shape} of {chosen.dtype}; {self.count} truths are "
-                "needed"
-            )
-        return chosen
+        return mask_of(mask, self.count)
 
     def _times(self) -> tuple[NDArray[np.int64], NDArray[np.bool_]]:
         import numpy as np

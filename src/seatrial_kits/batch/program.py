@@ -64,9 +64,10 @@ def _loaded(path: Path) -> ctypes.CDLL:
     found.batch_free.argtypes = [_POINTER]
     values: list[Any] = [_POINTER, _POINTER, _POINTER, _COUNT, _POINTER]
     found.batch_start.argtypes = found.batch_set.argtypes = values
-    found.batch_override.argtypes = values
+    found.batch_override.argtypes = found.batch_reseed.argtypes = values
+    found.batch_set_text.argtypes = [_POINTER, _POINTER, ctypes.c_uint32, ctypes.c_char_p]
     found.batch_get.argtypes = [_POINTER, _POINTER, _COUNT, _POINTER]
-    found.batch_step.argtypes = [_POINTER, _COUNT, _COUNT, _POINTER, _COUNT, _POINTER]
+    found.batch_step.argtypes = [*values[:2], _COUNT, _COUNT, _POINTER, _COUNT, _POINTER]
     found.batch_message.restype = ctypes.c_char_p
     found.batch_message.argtypes = [_POINTER, _COUNT]
     found.batch_times.argtypes = [_POINTER, _POINTER, _POINTER]
@@ -76,8 +77,10 @@ def _loaded(path: Path) -> ctypes.CDLL:
     for name in (
         "surround",
         "override",
+        "reseed",
         "start",
         "set",
+        "set_text",
         "get",
         "step",
         "times",

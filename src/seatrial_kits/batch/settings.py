@@ -81,6 +81,14 @@ class Settings:
                 raise InputError(f"{call}: {whole} is fed by {feeder}, and nothing else sets it")
         return named
 
+    def text(self, name: str) -> int | None:
+        """Return the reference of an input of text that nothing feeds, None of another port."""
+        part, port = self._system.located(name, "set")[0]
+        scalar = part.instance.variables.get(port)
+        if scalar is None or scalar.type is not str or scalar.causality != "input":
+            return None
+        return self._references.get(f"{part.name}.{port}")
+
     # ------------------------------------------------------------------ values
 
     def given(self, name: str, value: Any, call: str) -> dict[str, Floats]:
@@ -230,6 +238,13 @@ class Settings:
                 self._met.clear()  # those in use are kept by the copies
             self._met[key] = surroundings_of(source, values)
         return self._met[key]
+
+    def noise(self, seeds: NDArray[np.int64]) -> tuple[NDArray[np.uint32], Floats]:
+        """Return references and rows of the seeds of components: of their noise, not of weather."""
+        own = self._of_seeds(seeds)
+        return self._stacked(
+            {n: rows for n, rows in own.items() if n not in self._made.weather_seeds}
+        )
 
     def _of_seeds(self, seeds: NDArray[np.int64]) -> dict[str, Floats]:
         """Return the seeds of components, as `give_parameters` derives them from a system's."""

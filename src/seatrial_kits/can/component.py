@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from typing import Any, ClassVar
 
 from seatrial.errors import InputError, SimulationError, unknown
+from seatrial.links.parameter_validation import whole_number
 from seatrial.links.text import Inbox, Outbox, chunk
 from seatrial.model.component import (
     NS,
@@ -235,7 +236,10 @@ class CanBus(Logging, Noise, Component):
         self._ports = [Outbox(memory) for memory in self._outboxes]
 
     def _build(self, names: list[str], silent: list[str]) -> None:
-        queue, mailboxes = _whole("queue_length", self), _whole("mailboxes", self)
+        queue, mailboxes = (
+            whole_number("queue_length", self.queue_length),
+            whole_number("mailboxes", self.mailboxes),
+        )
         recovers = self.recovery == "on"
         controllers = [
             Controller(name, queue, mailboxes, name in silent, recovers) for name in names
@@ -243,8 +247,8 @@ class CanBus(Logging, Noise, Component):
         self._wrong = Disturbances(self.generator, len(names))
         self._bus = SimulatedBus(
             controllers,
-            _whole("bit_rate", self),
-            _whole("data_bit_rate", self),
+            whole_number("bit_rate", self.bit_rate),
+            whole_number("data_bit_rate", self.data_bit_rate),
             self._wrong,
             self._was_sent,
             self._was_broken,
@@ -396,10 +400,3 @@ def _identifiers(written: str) -> list[list[Any]]:
     if len(found) > WATCHED:
         raise InputError(f"watched has {len(found)} identifiers, {WATCHED} at most")
     return found
-
-
-def _whole(name: str, component: Component) -> int:
-    value: float = getattr(component, name)
-    if value % 1.0:
-        raise InputError(f"{name} is {value!r}, a whole number is needed")
-    return int(value)

@@ -333,8 +333,7 @@ class SimulatedBus:
     def _until(self, frame: Frame, count: int) -> int:
         """Return how long the first ``count`` bits of a frame last, ps."""
         nominal, data = length(frame)
-        before = min(count, nominal - TAIL)
-        fast = min(count - before, data)
+        fast = min(count - min(count, nominal - TAIL), data)
         return (count - fast) * self._bit + fast * self._data_bit
 
     def _take(self, attempt: Attempt) -> None:
@@ -388,8 +387,7 @@ class SimulatedBus:
         apart = {*attempt.senders, *attempt.gave_way}
         for node, each in enumerate(self.controllers):
             if node in attempt.senders:
-                alone = error is Error.ACK and each.passive
-                self._failed(node, 0 if alone else 8)
+                self._failed(node, 0 if error is Error.ACK and each.passive else 8)
             elif each.back_ps <= attempt.start_ps and not each.listens_only and node not in apart:
                 each.failed_to_receive(9 if node == attempt.first else 1)
         self.on_broken(Broken(attempt.end_ps, attempt.frame, attempt.senders, error, attempt.first))

@@ -32,7 +32,8 @@ from seatrial.model.component import NS
 from seatrial.system.flattening import load_rig
 from seatrial.system.rig import duration_ns
 from seatrial.system.system import Engine
-from seatrial.trial.files.trial import Trial, choices_in
+from seatrial.trial.files.fault_keys import choices_in
+from seatrial.trial.files.trial import Trial
 from seatrial.trial.files.trial_file import RecordEntry, TrialFile
 from seatrial.trial.running.hooks import Hooks
 from seatrial.trial.running.run import Result

@@ -14,7 +14,7 @@ from .meshes import IntArray
 CELLS = 56
 """Along each side of the surface that is drawn."""
 _PER_WAVE = 12
-"""Cells along the wave with most energy."""
+"""Cells along a wave of the mean length, by energy."""
 
 
 class Water:
@@ -29,8 +29,8 @@ class Water:
         self.size = reach / cells
         if waves is not None:
             energy = waves.amplitude**2
-            longest = math.tau / float(waves.k[int(np.argmax(energy))])
-            self.size = min(self.size, max(longest / _PER_WAVE, reach / cells / 4.0))
+            length = math.tau * float(energy @ (1.0 / waves.k)) / float(energy.sum())
+            self.size = min(self.size, max(length / _PER_WAVE, reach / cells / 4.0))
             self._north = waves.k * np.cos(waves.direction)
             self._east = waves.k * np.sin(waves.direction)
         self._steps: FloatArray = np.asarray(

@@ -17,7 +17,7 @@ from seatrial.cli.statuses import FAILED
 from seatrial.cli.watch import Watch
 from seatrial.errors import InputError
 from seatrial.model.units import quantity
-from seatrial.system.parameters import load_vehicle
+from seatrial.system.parameters import Outline, load_vehicle
 from seatrial.trial.criteria.criteria import parse
 from seatrial.trial.logs.common_time import Window
 from seatrial.trial.logs.formats import format_of, read_log
@@ -70,13 +70,8 @@ def import_log(
     criteria = [(text, text) for text in check or []]
     for _, text in criteria:
         parse(text)
-    outline = None if vehicle is None else load_vehicle(vehicle).file.outline
-    if vehicle is not None and outline is None:
-        print_notes([f"the file of {vehicle} has no outline: nothing of it is drawn"])
+    outline, step = _outline(vehicle), _step(every)
     patterns = [each.strip() for text in channels or [] for each in text.split(",")]
-    step = None if every is None else _duration("--every", every)
-    if step is not None and step <= 0.0:
-        raise InputError(f"--every: a time above 0 is needed, found {every!r}")
     name = format_name or format_of(path)
     if name == "run":
         raise InputError(f"{path}: is a run folder already")
@@ -115,6 +110,20 @@ def import_log(
     console.print(f"report: {page}", soft_wrap=True)
     if not passed:
         raise typer.Exit(FAILED)
+
+
+def _outline(vehicle: str | None) -> Outline | None:
+    outline = None if vehicle is None else load_vehicle(vehicle).file.outline
+    if vehicle is not None and outline is None:
+        print_notes([f"the file of {vehicle} has no outline: nothing of it is drawn"])
+    return outline
+
+
+def _step(every: str | None) -> float | None:
+    step = None if every is None else _duration("--every", every)
+    if step is not None and step <= 0.0:
+        raise InputError(f"--every: a time above 0 is needed, found {every!r}")
+    return step
 
 
 def print_records(folder: Path) -> bool:

@@ -46,6 +46,17 @@ from .telemetry.system import SystemTelemetry
 from .transport import Sender, Transport
 from .vehicle import Vehicle
 
+_PLAIN: tuple[type[Service], ...] = (
+    RefusalService,
+    MotionTelemetry,
+    OdometryTelemetry,
+    SensorTelemetry,
+    SystemTelemetry,
+    EstimatorTelemetry,
+    BoardTelemetry,
+)
+"""Services that need vehicle and transport alone."""
+
 
 class Node:
     """All services of one vehicle.
@@ -115,13 +126,7 @@ class Node:
             ClockService(vehicle, transport),
             FileService(vehicle, transport, files_on_board(parameters)),
             LogService(vehicle, transport, log),
-            RefusalService(vehicle, transport),
-            MotionTelemetry(vehicle, transport),
-            OdometryTelemetry(vehicle, transport),
-            SensorTelemetry(vehicle, transport),
-            SystemTelemetry(vehicle, transport),
-            EstimatorTelemetry(vehicle, transport),
-            BoardTelemetry(vehicle, transport),
+            *(service(vehicle, transport) for service in _PLAIN),
             NavigationTelemetry(vehicle, transport, lambda: self.goal),
             MotorTelemetry(vehicle, transport),
             # What the others changed is reported last.
@@ -132,13 +137,18 @@ class Node:
         """Other components of its system that were received."""
         self._receivers: dict[int, list[Receiver]] = {}
         """By number, in the order of the services."""
+        self._register(handlers, builders, intervals)
+
+    def _register(
+        self, handlers: dict[int, Handler], builders: dict[int, Builder], streams: dict[int, float]
+    ) -> None:
         for service in self.services:
             for number, receive in service.receivers.items():
                 self._receivers.setdefault(number, []).append(receive)
             handlers.update(service.commands)
             builders.update(service.messages)
-            intervals.update(service.streams)
-            vehicle.capabilities |= service.capabilities
+            streams.update(service.streams)
+            self.vehicle.capabilities |= service.capabilities
 
     @property
     def goal(self) -> Ned | None:

@@ -7,7 +7,7 @@ from typing import ClassVar
 from pymavlink.dialects.v20 import all as mavlink
 
 from seatrial.links.endpoints.url import check_urls
-from seatrial.links.parameter_validation import start_us
+from seatrial.links.parameter_validation import start_date
 from seatrial.links.truth import MOTION, TrueMotion
 from seatrial.links.unconnected import NOT_CONNECTED
 from seatrial.model.component import (
@@ -77,13 +77,7 @@ class MavlinkPorts(Logging, Reachable, TrueMotion, Sampled):
     latitude = Parameter(0.0, "rad", "of the origin, WGS 84", min=-1.5707964, max=1.5707964)
     longitude = Parameter(0.0, "rad", "of the origin, WGS 84", min=-3.1415927, max=3.1415927)
     altitude = Parameter(0.0, "m", "of the origin")
-    date = Parameter(
-        "2026-01-01",
-        "1",
-        "UTC at the start of the run: a day, for its midnight, or an instant",
-        check=start_us,
-        role="start-time",
-    )
+    date = start_date()
     mode_start = Parameter("hold", "1", "mode at the start", choices=START_MODES)
     armed_start = Parameter("off", "1", "whether it is armed at the start", choices=("off", "on"))
     failsafe = Parameter("hold", "1", "what it does when left alone", choices=ACTIONS)

@@ -7,7 +7,7 @@ from typing import ClassVar
 
 from seatrial.errors import InputError, unknown
 from seatrial.links.endpoints.url import check_urls
-from seatrial.links.parameter_validation import start_us
+from seatrial.links.parameter_validation import start_date
 from seatrial.links.servos import read_servos
 from seatrial.links.truth import MOTION, TrueMotion
 from seatrial.links.vehicle_sensors import read_instruments
@@ -75,13 +75,7 @@ class Px4Ports(Logging, Noise, Reachable, TrueMotion):
     latitude = Parameter(0.0, "rad", "of the origin, WGS 84", min=-1.5707964, max=1.5707964)
     longitude = Parameter(0.0, "rad", "of the origin, WGS 84", min=-math.pi, max=math.pi)
     altitude = Parameter(0.0, "m", "of the origin")
-    date = Parameter(
-        "2026-01-01",
-        "1",
-        "UTC at the start of the run: a day, for its midnight, or an instant",
-        check=start_us,
-        role="start-time",
-    )
+    date = start_date()
 
     imu = Parameter(0.0, "m", "inertial unit from the body origin, body axes", axes="xyz")
     gyro_noise = Parameter(6e-4, "rad/s", "of a sample, standard deviation", min=0.0)

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from seatrial.devices.sensor import share_of_sample
 from seatrial.links.vehicle_sensors import Sensors, axis, first_of, three
 
 from .frames import TO_ENU, TO_FLU, turned
@@ -22,6 +23,7 @@ SENSORS: Mapping[str, tuple[str, ...]] = {
     "velocity": ("gnss",),
     "pressure": ("depth", "ctd"),
     "dvl": ("dvl",),
+    "dvl_report": ("dvl",),
     "water_speed": ("speed-log",),
     "water_depth": ("echo-sounder", "dvl"),
     "wind": ("anemometer",),
@@ -54,8 +56,8 @@ class Instruments:
     def covariance(self, key: str, quantity: str, *, world: bool = False) -> list[float]:
         """Return a covariance, row by row, in the axes of ROS; zeros where nothing is known.
 
-        diag(noise^2 + instability^2) of the sensor's own axes, turned to ahead-left-up, or to
-        east-north-up for a sensor whose axes are those of the ``world``.
+        diag(noise^2 + instability^2) of the sensor's own axes, the noise of a sample, turned to
+        ahead-left-up, or to east-north-up for a sensor whose axes are those of the ``world``.
         """
         known = key, quantity
         if known not in self._covariances:
@@ -64,8 +66,21 @@ class Instruments:
             self._covariances[known] = [float(v) for v in found]
         return self._covariances[known]
 
+    def dvl_covariance(self) -> list[float]:
+        """Return that of a DVL's velocity, in its own axes or ahead-left-up; zeros if unknown.
+
+        One beam's noise s makes s / (sqrt(2) sin a) ahead and abeam, s / (2 cos a) down, with
+        the angle a of the beams (`seatrial.devices.dvl.Dvl`).
+        """
+        (beam,) = self.deviations("dvl", "bottom", 1)
+        angle = axis(self._of["dvl"].get("beam_angle", math.radians(22.5)))
+        level, down = beam / (math.sqrt(2.0) * math.sin(angle)), beam / (2.0 * math.cos(angle))
+        return [level**2, 0.0, 0.0, 0.0, level**2, 0.0, 0.0, 0.0, down**2]
+
     def deviations(self, key: str, quantity: str, count: int = 3) -> list[float]:
         """Return the standard deviations of a quantity: noise and slow error together."""
         sensor = self._of.get(key, {})
-        errors = [sensor.get(f"{quantity}_{kind}", 0.0) for kind in ("noise", "instability")]
-        return [math.hypot(*(axis(error, i) for error in errors)) for i in range(count)]
+        noise, slow = (sensor.get(f"{quantity}_{kind}", 0.0) for kind in ("noise", "instability"))
+        bandwidth = axis(sensor.get(f"{quantity}_bandwidth", 0.0))
+        share = share_of_sample(self.period_ns(key) * 1e-9, bandwidth)
+        return [math.hypot(share * axis(noise, i), axis(slow, i)) for i in range(count)]

@@ -1,6 +1,7 @@
 """Definitions that the stores of rosbags lack, by name: fields alone, of a service two parts.
 
 simulation_interfaces 1.x (Apache-2.0, https://github.com/ros-simulation/simulation_interfaces),
+marine_acoustic_msgs (BSD-3-Clause, https://github.com/apl-ocean-engineering/marine_msgs),
 ros_gz_interfaces (Apache-2.0, https://github.com/gazebosim/ros_gz) and rcl_interfaces (Apache-2.0).
 A module, and no files: FMUs take modules along.
 """
@@ -14,6 +15,26 @@ INTERFACES: Mapping[str, str] = {
 Parameter[] parameters
 ---
 SetParametersResult[] results
+""",
+    "marine_acoustic_msgs/msg/Dvl": """\
+std_msgs/Header header
+uint8 velocity_mode
+uint8 dvl_type
+geometry_msgs/Vector3 velocity
+float64[9] velocity_covar
+float64 altitude
+float64 course_gnd
+float64 speed_gnd
+uint8 num_good_beams
+float32 sound_speed
+bool beam_ranges_valid
+bool beam_velocities_valid
+geometry_msgs/Vector3[4] beam_unit_vec
+float64[4] range
+float32[4] range_covar
+float32[4] beam_quality
+float32[4] beam_velocity
+float32[4] beam_velocity_covar
 """,
     "ros_gz_interfaces/msg/Float32Array": """\
 float32[] data

@@ -21,6 +21,7 @@ from seatrial.model.component import (
 )
 from seatrial.model.sampled import Sampled
 from seatrial.model.terminals import ORDERED
+from seatrial.physics.thrust_curve import COEFFICIENTS
 
 from .participant import HIGHEST_DOMAIN
 from .topics import check_namespace, read_topics
@@ -84,6 +85,10 @@ class Ros2Ports(Logging, Reachable, TrueMotion, Sampled):
     thrust_exponent = Parameter(
         1.0, "1", "of the share of full thrust in the command: 0.5 where thrust goes by its square",
         min=0.1, max=2.0,
+    )  # fmt: skip
+    thrust_curve = Parameter(
+        0.0, "N", "thrust by odd powers of the command, in the exponent's place; 0: none",
+        axes=COEFFICIENTS,
     )  # fmt: skip
     steering_travel = Parameter(
         0.0, "rad", "angle of actuators that steer at their greatest pulse; 0: none do", min=0.0

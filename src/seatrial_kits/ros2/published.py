@@ -32,6 +32,7 @@ _SONAR, _FAR = 0, 100.0
 _NO_FIX, _FIX, _GPS = -1, 0, 1
 _DIAGONAL = 2
 _DISCHARGING, _POWER_UNKNOWN = 2, 0
+_BOTTOM = 1
 _UNKNOWN = [-1.0, *(0.0,) * 8]
 """Covariance that says: there is no such estimate."""
 
@@ -79,23 +80,28 @@ def transforms(link: Ros2Ports, here: Here) -> Fields:
     moved = {"translation": enu(truth.position_n), "rotation": quaternion(truth.attitude)}
     return {
         "transforms": [
-            _transform(here, MAP, ODOM, {"rotation": (0.0, 0.0, 0.0, 1.0)}),
+            _transform(here, MAP, ODOM, {"rotation": _UP}),
             _transform(here, ODOM, BASE, moved),
         ]
     }
 
 
 def places(link: Ros2Ports, here: Here) -> Fields:
-    """tf2_msgs/TFMessage: base_link to each sensor, whose axes are those of base_link."""
-    found = {FRAMES[key]: here.instruments.place(key) for key in FRAMES}
+    """tf2_msgs/TFMessage: base_link to each sensor, whose axes are its own, but for a DVL's."""
+    found = [
+        (frame, here.instruments.place(key), _DOWN if key == "dvl_report" else _UP)
+        for key, frame in FRAMES.items()
+    ]
     return {
         "transforms": [
-            _transform(
-                here, BASE, frame, {"translation": flu(at), "rotation": (0.0, 0.0, 0.0, 1.0)}
-            )
-            for frame, at in found.items()
+            _transform(here, BASE, frame, {"translation": flu(at), "rotation": turn})
+            for frame, at, turn in found
         ]
     }
+
+
+_UP, _DOWN = (0.0, 0.0, 0.0, 1.0), (1.0, 0.0, 0.0, 0.0)
+"""Turns of axes ahead-left-up, and ahead-right-down: half a turn about the x axis."""
 
 
 def _transform(here: Here, parent: str, child: str, transform: Fields) -> Fields:
@@ -191,8 +197,35 @@ def dvl(link: Ros2Ports, here: Here) -> Fields | None:
     """geometry_msgs/TwistWithCovarianceStamped: over the bottom, in base_link; none without it."""
     if not link.velocity_b_valid:
         return None
-    twist = {"twist": {"linear": flu(link.velocity_b)}}
+    covariance = [0.0] * 36
+    known = here.instruments.dvl_covariance()
+    for row in range(3):
+        covariance[6 * row : 6 * row + 3] = known[3 * row : 3 * row + 3]
+    twist = {"twist": {"linear": flu(link.velocity_b)}, "covariance": covariance}
     return {"header": here.header(BASE), "twist": twist}
+
+
+def dvl_report(link: Ros2Ports, here: Here) -> Fields | None:
+    """marine_acoustic_msgs/Dvl: x ahead, z down, the way it points; none without the bottom.
+
+    The course is that of its x axis to its y axis. Of single beams it has nothing.
+    """
+    if not link.velocity_b_valid:
+        return None
+    u, v, _ = link.velocity_b
+    echo = is_connected(link.water_depth) and link.water_depth_valid
+    known = here.instruments.dvl_covariance()
+    return {
+        "header": here.header(FRAMES["dvl_report"]),
+        "velocity_mode": _BOTTOM,
+        "velocity": link.velocity_b,
+        "velocity_covar": known if any(known) else [-1.0] * 9,
+        "altitude": link.water_depth if echo else math.nan,
+        "course_gnd": math.atan2(v, u),
+        "speed_gnd": math.hypot(u, v),
+        "num_good_beams": 4,
+        "sound_speed": math.nan,
+    }
 
 
 def water_speed(link: Ros2Ports, here: Here) -> Fields | None:
@@ -279,6 +312,7 @@ FRAMES = {
     "compass": "compass_link",
     "fix": "gnss_link",
     "pressure": "pressure_link",
+    "dvl_report": "dvl_link",
     "water_depth": "echo_sounder_link",
     "temperature": "ctd_link",
 }
@@ -305,6 +339,9 @@ MEASURED: Mapping[str, Measurement] = {
     "velocity": Measurement(("velocity_n",), velocity, ("position_valid",)),
     "pressure": Measurement(("depth",), pressure, ("depth_valid",)),
     "dvl": Measurement(("velocity_b",), dvl, ("velocity_b_valid",)),
+    "dvl_report": Measurement(
+        ("velocity_b",), dvl_report, ("velocity_b_valid", "water_depth", "water_depth_valid")
+    ),
     "water_speed": Measurement(("water_speed",), water_speed, ("water_speed_valid",)),
     "water_depth": Measurement(("water_depth",), water_depth, ("water_depth_valid",)),
     "wind": Measurement(("wind_speed",), wind, ("wind_angle", "wind_valid")),

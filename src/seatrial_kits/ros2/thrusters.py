@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 from seatrial.links.servos import Servo, read_servos
 from seatrial.links.unconnected import is_connected
+from seatrial.physics.thrust_curve import command_of
 
 from .ports import ANGLED, CHANNELS, SHARED, THRUSTERS, Ros2Ports
 
@@ -25,6 +26,7 @@ class Actuator:
     astern: float = 0.0
     exponent: float = 1.0
     travel: float = 0.0
+    curve: tuple[float, ...] = ()
 
     @property
     def neutral(self) -> float:
@@ -34,13 +36,15 @@ class Actuator:
     def value(self, way: str, command: float) -> float:
         """Return the pulse, s, share or angle, rad, of a command, held within its limits.
 
-        thrust: share = +-(|T| / T_full) ^ exponent. pos: about the z axis up, against the angles
-        of here. The share of a pulse is that of its travel from neutral.
+        thrust: share = +-(|T| / T_full) ^ exponent, or that of the curve. pos: about the z
+        axis up, against the angles of here. The share of a pulse is that of its travel.
         """
         if way == "pos" and self.servo is None:
             return -command if self.member.startswith("a") else command
         share = command
-        if way == "thrust":
+        if way == "thrust" and any(self.curve):
+            share = command_of(self.curve, command)
+        elif way == "thrust":
             full = self.ahead if command > 0.0 else self.astern
             share = math.copysign((abs(command) / full) ** self.exponent, command) if full else 0.0
         elif way == "pos":
@@ -86,20 +90,20 @@ def _made(
     astern: float,
     exponent: float,
     travel: float,
+    curve: tuple[float, ...],
 ) -> Actuator:
     if ahead > 0.0:
-        return Actuator(
-            name, member, ("command", "thrust"), servo, ahead, astern or ahead, exponent
-        )
+        thrusts = ahead, astern or ahead, exponent
+        return Actuator(name, member, ("command", "thrust"), servo, *thrusts, curve=curve)
     ways = ("command", "pos") if servo is not None and travel > 0.0 else ("command",)
     return Actuator(name, member, ways, servo, travel=travel)
 
 
-def _numbers(link: Ros2Ports, index: int) -> tuple[float, float, float, float]:
+def _numbers(link: Ros2Ports, index: int) -> tuple[float, float, float, float, tuple[float, ...]]:
     known = index < len(THRUSTERS)
     ahead = link.thrust_ahead[index] if known else 0.0
     astern = link.thrust_astern[index] if known else 0.0
-    return ahead, astern, link.thrust_exponent, link.steering_travel
+    return ahead, astern, link.thrust_exponent, link.steering_travel, tuple(link.thrust_curve)
 
 
 def _connected(names: Sequence[str], values: Sequence[float]) -> set[str]:

@@ -31,6 +31,7 @@ PUBLISHED: Mapping[str, Topic] = {
     "velocity": Topic("gnss/velocity", "geometry_msgs/msg/TwistStamped"),
     "pressure": Topic("pressure", "sensor_msgs/msg/FluidPressure"),
     "dvl": Topic("dvl/twist", "geometry_msgs/msg/TwistWithCovarianceStamped"),
+    "dvl_report": Topic("dvl", "marine_acoustic_msgs/msg/Dvl"),
     "water_speed": Topic("speed_log", "geometry_msgs/msg/TwistStamped"),
     "water_depth": Topic("echo_sounder", "sensor_msgs/msg/Range"),
     "wind": Topic("wind", "geometry_msgs/msg/TwistStamped"),

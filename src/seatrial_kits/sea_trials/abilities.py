@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from functools import lru_cache
 
+from seatrial.control.guidance import RESTING
 from seatrial.system.assembly import assemble
 from seatrial.system.part import Part
 from seatrial.system.system import System
@@ -75,7 +76,7 @@ def abilities(system: System) -> frozenset[str]:
                 found.add(STOPS)
             if _value(part, "depth_control") == "on":
                 found.add(DIVES)
-            if _value(part, "staying") == "rest":
+            if _value(part, "staying") in RESTING:
                 found.add(STAYS)
     without = {STAYS, MOORED} if STOPS not in found else {MOORED} if PITCHES in found else set()
     return frozenset(found - without)

@@ -8,11 +8,14 @@ sensor status, copy of the version), it is read only here.
 
 from __future__ import annotations
 
+import tomllib
 from collections.abc import Iterable
 from dataclasses import dataclass
+from pathlib import Path
 
 from seatrial.errors import InputError, unknown
 
+DATA_FILES = ("registers.toml",)
 COMMAND_END = 0x0F
 """Where the command block ends, which is most of the traffic."""
 TOP = 0xF0
@@ -106,125 +109,8 @@ def _many(
     ]
 
 
-_THRUSTERS = ("port", "starboard", "vertical")
-
-
-def _thrusters(what: str, address: int, scale: float, default: Iterable[int], note: str) -> list:  # type: ignore[type-arg]
-    names = " ".join(f"{thruster}_{what}" for thruster in _THRUSTERS)
-    return _many(names, address, "u16", scale, access="rws", default=default, note=note)
-
-
-def _controller(name: str, address: int, default: Iterable[int]) -> list:  # type: ignore[type-arg]
-    names = " ".join(f"{name}_{part}" for part in "pidk")
-    return _many(
-        names, address, "i16", 1e-4, access="rws", default=default, note="P, I, D; K multiplies"
-    )
-
-
-def _terms(name: str, address: int) -> list:  # type: ignore[type-arg]
-    names = " ".join(f"{name}_{part}" for part in ("p_term", "i_term", "d_term", "output"))
-    return _many(names, address, "i16", 1e-4, note="terms of the controller, and their sum")
-
-
-_SHARE = "share of the power, per loop"
-
-REGISTERS: tuple[Register, ...] = (
-    *_many(
-        "port_target starboard_target vertical_target",
-        0x00,
-        "i16",
-        0.01,
-        "1",
-        access="rw",
-        note="-1 to 1",
-    ),
-    *_many("lights", 0x06, "u8", 0.01, access="rw", note="0 to 1"),
-    *_many("camera_tilt", 0x07, "i8", 1.0, "deg", access="rw", note="-90 to 90"),
-    *_many("camera_focus", 0x08, "i8", 0.01, access="rw", note="-1 to 1"),
-    *_many("camera_control", 0x09, "u8", access="rw", note="bit 1: camera selected"),
-    *_many(
-        "camera_buttons",
-        0x0A,
-        "u8",
-        access="rw",
-        note="bits: menu, up, down, left, right, menu off",
-    ),
-    *_many("auto_depth_target", 0x0B, "u16", 1.0, "mbar", access="rw", default=[OFF]),
-    *_many("auto_heading_target", 0x0D, "u16", 1.0, "deg", access="rw", default=[OFF]),
-    *_many("power_manager", 0x13, "u8", 0.01, default=[100], note="power it allows"),
-    *_thrusters("dead_band", 0x14, 1e-3, (380, 380, 400), "multiplier, 0 to 1"),
-    *_thrusters("max_limit", 0x1A, 1e-3, (920, 920, 900), "multiplier, 0 to 1"),
-    *_thrusters("slew_rate", 0x20, 1e-4, (50, 50, 50), "0 to 1"),
-    *_controller("auto_depth", 0x26, (-200, -4, 0, 10000)),
-    *_controller("auto_heading", 0x2E, (600, 40, 8000, 1000)),
-    *_many("max_current", 0x46, "u16", 0.01, "A", access="rws", default=[3300]),
-    *_many("min_voltage", 0x48, "u16", 0.01, "V", access="rws", default=[3800]),
-    *_many("voltage_decrement", 0x4A, "u16", 1e-3, access="rws", default=[1], note=_SHARE),
-    *_many("voltage_increment", 0x4C, "u16", 1e-4, access="rws", default=[1], note=_SHARE),
-    *_many("current_decrement", 0x4E, "u16", 1e-3, access="rws", default=[1], note=_SHARE),
-    *_many("current_increment", 0x50, "u16", 1e-4, access="rws", default=[1], note=_SHARE),
-    *_many("max_thruster_delta", 0x52, "u16", 1e-3, access="rws", default=[10]),
-    *_many("thrust_delta_clamp", 0x54, "u16", 0.01, access="rws", default=[500]),
-    *_many("thrust_delta_increment", 0x56, "u16", 1e-4, access="rws", default=[11]),
-    *_many("min_power", 0x58, "u8", 0.01, access="rws", default=[50]),
-    *_many("max_power", 0x59, "u8", 0.01, access="rws", default=[100]),
-    *_many("total_power", 0x5F, "u8", 0.01, default=[100], note="power available"),
-    *_many("voltage_drop", 0x60, "u8", 0.1, "V", note="across the tether at the start"),
-    *_many("horizontal_limit", 0x61, "u8", 0.01, default=[92], note="reserved"),
-    *_many("attitude_sensor", 0x64, "u8", default=[1], note="0 KCF, 1 VN100"),
-    *_many("pressure_sensor", 0x65, "u8", note="0 standard"),
-    *_many("pressure", 0x66, "u16", 1.0, "mbar", note="absolute"),
-    *_many("heading pitch roll", 0x68, "i16", 0.1, "deg"),
-    *_many(
-        "yaw_acceleration pitch_acceleration roll_acceleration",
-        0x6E,
-        "i16",
-        note="depends on the sensor",
-    ),
-    *_many(
-        "surge_acceleration sway_acceleration heave_acceleration",
-        0x74,
-        "i16",
-        1e-3,
-        "m/s2",
-        note="specific force; scale found in captures",
-    ),
-    *_many("water_temperature", 0x7A, "i16", 0.01, "degC"),
-    *_many("tether_voltage", 0x7C, "u16", 0.01, "V"),
-    *_many("bus_voltage", 0x7E, "u16", 0.01, "V", note="of the 12 V supply"),
-    *_many("bus_current", 0x80, "u16", 1e-3, "A", note="of the 12 V supply"),
-    *_many("cpu_temperature power_temperature", 0x82, "u8", note="reserved"),
-    *_many("humidity", 0x84, "u16", 0.01, note="relative, inside"),
-    *_many("communication_errors", 0x86, "u16"),
-    *_many("max_depth", 0x88, "u16", 1.0, "mbar", access="rs", note="reserved"),
-    *_many("max_humidity", 0x8A, "u16", 0.01, note="reserved"),
-    *_many("run_time", 0x8C, "u32", 1.0, "s", access="rs"),
-    *_many(" ".join(f"adc_{n}" for n in range(8)), 0x90, "u16", note="raw"),
-    *_many(
-        " ".join(f"servo_{n}" for n in range(1, 10)),
-        0xA0,
-        "u16",
-        access="rw",
-        default=[2764] * 5 + [2914] + [2764] * 3,
-        note="clock ticks",
-    ),
-    *_many("servo_timebase", 0xB2, "u16", access="rw", note="clock ticks"),
-    *_terms("auto_depth", 0xB4),
-    *_terms("auto_heading", 0xBC),
-    *_many("magnetometer_x magnetometer_y magnetometer_z", 0xC4, "i16", note="raw"),
-    *_many(
-        " ".join(f"magnetometer_{what}_{axis}" for what in ("offset", "scale") for axis in "xyz"),
-        0xCA,
-        "i16",
-        access="rws",
-        note="reserved for its calibration",
-    ),
-    *_many("calibration_key", 0xE2, "u8", access="rws", note="calibration is valid"),
-    *_many("attitude_status", 0xE3, "u16"),
-    *_many("attitude_reset", 0xE5, "u8", access="rw", note="command"),
-    *_many("version_copy", 0xEB, "u24", default=[0x060602], note="of the firmware"),
-    *_many("commit", COMMIT, "u16", access="rw", note="keeps the stored ones, written with any"),
-)
+_ROWS = tomllib.loads(Path(__file__).with_name("registers.toml").read_text("utf-8"))["registers"]
+REGISTERS = tuple(register for row in _ROWS for register in _many(**row))
 """All data of the map below 0xF0, in its order. Bytes without one are plain memory."""
 
 BY_NAME = {register.name: register for register in REGISTERS}

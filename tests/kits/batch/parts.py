@@ -6,7 +6,9 @@ import casadi as ca
 import numpy as np
 
 from seatrial.model.component import Component, Input, Output, Parameter
+from seatrial.model.mixins import Noise
 from seatrial.model.plant import State
+from seatrial.model.sampled import Sampled
 from seatrial.physics.craft.surrounded import SurroundedPlant, surrounding
 
 
@@ -35,6 +37,22 @@ class Cork(SurroundedPlant):
     def met(self):
         speed = self.current_speed
         return (lambda _t, _x: np.array([speed])) if speed else None
+
+
+class Walker(Noise, Sampled):
+    """A random walk: x_k+1 = x_k + n_k."""
+
+    x = Output("m", "place")
+
+    def reset(self, t):
+        self._x = 0.0
+
+    def sample(self, t, k):
+        self.x = self._x
+
+    def update(self, t, k):
+        drawn: list[float] = self.generator(k).standard_normal(1).tolist()
+        self._x += drawn[0]
 
 
 class Pilot(Component):

@@ -426,11 +426,60 @@ def test_a_simulation_of_a_trial_starts_anew_with_its_events(rig: Path) -> None:
         assert everything(one) == late
 
 
-def test_a_fault_without_c_is_named(rig: Path) -> None:
+LOG = 'where = "log", at = "{at} ms", for = "{lasts} ms"'
+FAULTS = [
+    f'{{{{ what = "off", {LOG} }}}}',
+    f'{{{{ what = "stuck", {LOG} }}}}',
+    f'{{{{ what = "intermittent", {LOG} }}}}',
+    f'{{{{ what = "bias", of = "water_velocity", value = "0.3 m/s", grows_over = "80 ms", {LOG} }}}}',
+    f'{{{{ what = "noise", of = "water_velocity", value = "0.3 m/s", {LOG} }}}}',
+    '{{ what = "stuck", where = "pilot.force", at = "{at} ms", for = "{lasts} ms" }}',
+    '{{ what = "fixed", where = "log.water_velocity.u", value = "1 m/s", at = "{at} ms" }}',
+]
+
+
+@settings(max_examples=12)
+@given(
+    fault=st.sampled_from(FAULTS),
+    at=st.integers(0, 30),
+    lasts=st.integers(1, 20),
+    seed=st.integers(1, 2**31),
+)
+def test_a_fault_of_a_trial_acts_as_in_a_single_run(
+    fault: str, at: int, lasts: int, seed: int, rig: Path
+) -> None:
+    path = rig.with_name("faulty.toml")
+    whole = TRIAL[: TRIAL.index("[[faults]]")].replace("[set]", "faults = [FAULT]\n[set]")
+    path.write_text(whole.replace("FAULT", fault.format(at=10 * at, lasts=10 * lasts)), "utf-8")
+    with Batch(path, 2, seed=seed) as batch:
+        names = list(batch.signals)
+        batch.step(17)
+        batch.reset(np.array([False, True]))
+        batch.step(21)
+        found = batch.get(*names)
+    for i, steps in enumerate([38, 21]):
+        with Simulation(path, engine="native", seed=seed + i) as one:
+            one.step(steps)
+            assert everything(one) == found[i].tolist()
+
+
+def test_a_fault_that_copies_have_not_is_named(rig: Path) -> None:
     path = rig.with_name("biased.toml")
     path.write_text(TRIAL.replace('"fixed"', '"bias"'), "utf-8")
-    with pytest.raises(InputError, match=r"biased.toml: faults.0: .* 'fixed' at a fixed time"):
+    with pytest.raises(InputError, match=r"biased.toml: faults.0: .* have faults of devices, and"):
         Batch(path, 2)
+    path.write_text(TRIAL + TRIAL[TRIAL.index("[[faults]]") :], "utf-8")
+    with pytest.raises(InputError, match=r"faults.1: pilot.force has another fault or an event"):
+        Batch(path, 2)
+
+
+def test_the_fault_of_a_device_is_a_text(rig: Path) -> None:
+    with Batch(rig, 2, set={"cork.current_speed": 0.5}) as batch:
+        batch.set("log.fault", "off", np.array([True, False]))
+        batch.step(20)
+        assert (batch.get("log.water_velocity.u") != 0.0).tolist() == [False, True]
+        with pytest.raises(InputError, match=r"set: log\.fault is a text, found 1\.0"):
+            batch.set("log.fault", 1.0)
 
 
 def test_each_copy_of_a_trial_in_waves_has_its_own_height_and_seed() -> None:

@@ -20,8 +20,8 @@ _START = {
     "sea_height": 0.3,
     "sea_period": 4.0,
 }
-_NO_ERRORS = ("_noise", "_bias", "_instability", "_resolution")
-_ZERO = ("delay", "antenna", "place", "deviation", "variation")
+_NO_ERRORS = ("_noise", "_bias", "_instability", "_resolution", "_scale")
+_ZERO = ("delay", "antenna", "place", "deviation", "variation", "attitude_time")
 
 
 @cache

@@ -1,10 +1,11 @@
 """A node of somebody else: cyclonedds alone, with types typed by hand and its own serialiser.
 
-python peer.py DOMAIN square|thrust|silent ...: helmsmen of the vehicle ``otter``. It ends when its
+python peer.py DOMAIN square|delayed|thrust|silent: helmsmen of the vehicle ``otter``. It ends when its
 standard input does.
 """
 
 import math
+import random
 import select
 import sys
 import time
@@ -175,11 +176,12 @@ def sail(node, act):
         time.sleep(0.0002)
 
 
-def square(node):
-    """Sail the legs by stamped velocities."""
+def square(node, longest=0.0):
+    """Sail the legs by stamped velocities; answers come up to ``longest``, s, later, at random."""
     writer = node.writer("/otter/cmd_vel_stamped", TwistStamped)
 
     def act(odometry, path):
+        time.sleep(longest * random.random())
         error = towards(odometry, path) if path else 0.0
         speed = 1.5 * max(0.2, math.cos(error))
         twist = Twist(Vector3(x=speed), Vector3(z=0.8 * error))
@@ -202,9 +204,14 @@ def thrust(node):
     sail(node, act)
 
 
+def delayed(node):
+    square(node, 0.05)
+
+
 def silent(node):
     sail(node, lambda odometry, path: None)
 
 
 if __name__ == "__main__":
-    {"square": square, "thrust": thrust, "silent": silent}[sys.argv[2]](Node(int(sys.argv[1])))
+    helmsmen = {each.__name__: each for each in (square, delayed, thrust, silent)}
+    helmsmen[sys.argv[2]](Node(int(sys.argv[1])))

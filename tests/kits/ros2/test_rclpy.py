@@ -4,6 +4,7 @@ SEATRIAL_ROS2 names the folder of a built workspace: its ``v`` is the environmen
 its ``install`` what was built.
 """
 
+import math
 import os
 import re
 import subprocess
@@ -12,6 +13,7 @@ from pathlib import Path
 
 import pytest
 
+from seatrial import Simulation
 from tests.command import seatrial, seatrial_process
 
 from .peer import LOOPBACK
@@ -31,7 +33,7 @@ from sensor_msgs.msg import Imu
 from std_srvs.srv import SetBool
 from rcl_interfaces.srv import SetParameters
 from rcl_interfaces.msg import Parameter as Value, ParameterValue
-from simulation_interfaces.srv import GetSimulationState, StepSimulation, SetSimulationState
+from simulation_interfaces.srv import GetSimulationState, SetSimulationState, SpawnEntity, StepSimulation
 
 rclpy.init()
 node = Node("watch", parameter_overrides=[Parameter("use_sim_time", value=True)])
@@ -53,6 +55,8 @@ assert state.state.state == 1, state
 pause = SetSimulationState.Request()
 pause.state.state = 2
 assert call(SetSimulationState, "/seatrial/set_simulation_state", pause).result.result == 1
+spawned = call(SpawnEntity, "/seatrial/spawn_entity", SpawnEntity.Request(name="second"))
+assert spawned.result.result == 0 and spawned.result.error_message, spawned
 steps = StepSimulation.Request(steps=10)
 assert call(StepSimulation, "/seatrial/step_simulation", steps).result.result == 1
 pause.state.state = 1
@@ -61,6 +65,54 @@ value = ParameterValue(type=4, string_value="off")
 fault = SetParameters.Request(parameters=[Value(name="gps", value=value)])
 assert call(SetParameters, "/otter/inject_fault", fault).results[0].successful
 print("done", len(seen))
+"""
+
+# A node as those that are written for VRX: its topics, no word of this project. It turns towards
+# the goal and goes there.
+KEEPER = """
+import math, rclpy
+from geometry_msgs.msg import PoseStamped
+from rclpy.node import Node
+from sensor_msgs.msg import Imu, NavSatFix
+from std_msgs.msg import Float64
+
+class Keeper(Node):
+    def __init__(self):
+        super().__init__("keeper")
+        self.goal = self.yaw = None
+        self.rate = 0.0
+        self.create_subscription(PoseStamped, "/vrx/stationkeeping/goal", self.on_goal, 10)
+        self.create_subscription(Imu, "/wamv/sensors/imu/imu/data", self.on_imu, 10)
+        self.create_subscription(NavSatFix, "/wamv/sensors/gps/gps/fix", self.on_fix, 10)
+        self.sides = [
+            self.create_publisher(Float64, f"/wamv/thrusters/{side}/thrust", 10)
+            for side in ("left", "right")
+        ]
+
+    def on_goal(self, goal):
+        self.goal = goal.pose.position.x, goal.pose.position.y
+
+    def on_imu(self, imu):
+        turn = imu.orientation
+        self.yaw = math.atan2(
+            2.0 * (turn.w * turn.z + turn.x * turn.y), 1.0 - 2.0 * (turn.y**2 + turn.z**2)
+        )
+        self.rate = imu.angular_velocity.z
+
+    def on_fix(self, fix):
+        if self.goal is None or self.yaw is None:
+            return
+        north = 111_000.0 * (self.goal[0] - fix.latitude)
+        east = 111_000.0 * math.cos(math.radians(fix.latitude)) * (self.goal[1] - fix.longitude)
+        error = math.remainder(math.atan2(north, east) - self.yaw, math.tau)
+        away = math.hypot(north, east)
+        ahead = 40.0 * min(away, 2.0) * max(0.0, math.cos(error)) if away > 0.7 else 0.0
+        turn = 60.0 * error - 120.0 * self.rate if away > 0.7 else -120.0 * self.rate
+        for publisher, share in zip(self.sides, (-1.0, 1.0)):
+            publisher.publish(Float64(data=ahead + share * turn))
+
+rclpy.init()
+rclpy.spin(Keeper())
 """
 
 
@@ -128,9 +180,35 @@ def test_the_tutorial_s_node_sails_the_square_twice_alike(node, domain, tmp_path
     assert "PASS  all waypoints are passed" in report.stdout
 
 
-def test_clock_imu_services_and_faults(node, domain, tmp_path):
-    from seatrial import Simulation
+def test_a_node_for_vrx_runs_as_it_is(node, domain, tmp_path):
+    """It gets the goal, and is there before the task has run for long; its death is neutral."""
+    process = node("keeper.py", KEEPER)
+    with Simulation(
+        "vrx",
+        choices={"vehicle": "wam-v", "autopilot": "ros2", "link": "vrx"},
+        set={
+            "autopilot.ros2.domain": domain, "task.domain": domain,
+            "task.waypoint_1": ["4.92 m", "3.24 m", "0 m"], "task.heading.goal1": "90 deg",
+            "task.initial": "1 s", "task.ready": "1 s",
+        },
+    ) as simulation:  # fmt: skip
+        begun, nearest = time.monotonic(), math.inf
+        while simulation.time < 60.0 and time.monotonic() - begun < 240.0 and nearest > 1.0:
+            simulation.step(5)
+            time.sleep(max(0.0, begun + simulation.time - time.monotonic()))
+            north, east = (simulation.get(f"vehicle.hull.position.{axis}") for axis in "xy")
+            nearest = min(nearest, math.hypot(north - 4.92, east - 3.24))
+        assert nearest < 1.0
+        assert simulation.get("autopilot.ros2.source") == "thrusters"
+        assert simulation.get("task.state") == "running"
+        process.kill()
+        process.wait()
+        simulation.run(simulation.time + 1.2)
+        assert simulation.get("autopilot.ros2.source") == "none"
+        assert simulation.get("autopilot.ros2.pulse.ch1") == pytest.approx(1.5e-3)
 
+
+def test_clock_imu_services_and_faults(node, domain, tmp_path):
     process = node("watch.py", WATCH)
     with Simulation(
         "sil",

@@ -23,13 +23,13 @@ def otter(domain, **settings):
 
 
 @pytest.mark.slow
-def test_a_helmsman_rounds_a_corner_by_velocities_and_twice_with_the_same_bytes(
+def test_a_helmsman_in_lockstep_leaves_the_same_bytes_however_late_it_answers(
     domain, peer, tmp_path
 ):
-    peer("square")
     settings = {"autopilot.ros2.domain": domain, **SLOW, "autopilot.ros2.lockstep": "stamped"}
     written = [f"{key}={value}" for key, value in settings.items()]
-    for name in ("first", "second"):
+    for name in ("square", "delayed"):
+        helmsman = peer(name)
         done = seatrial_process(
             "run",
             "under-way",
@@ -49,7 +49,9 @@ def test_a_helmsman_rounds_a_corner_by_velocities_and_twice_with_the_same_bytes(
             cwd=tmp_path,
         )
         assert done.returncode in (0, 1), done.stderr
-    first, second = (tmp_path / name / "signals.csv" for name in ("first", "second"))
+        helmsman.kill()
+        helmsman.wait()
+    first, second = (tmp_path / name / "signals.csv" for name in ("square", "delayed"))
     assert first.read_bytes() == second.read_bytes()
     assert len(first.read_text().splitlines()) > 15
 

@@ -3,7 +3,7 @@
 import pytest
 
 from seatrial_kits.videoray import registers as csr
-from seatrial_kits.videoray.decode import describe
+from seatrial_kits.videoray.command_decode import describe
 from seatrial_kits.videoray.frame import VRCSR, encode
 from seatrial_kits.videoray.identity import read_config
 from seatrial_kits.videoray.replies import read, read_memory

@@ -3,7 +3,7 @@
 import pytest
 
 from seatrial.errors import InputError
-from seatrial_kits.videoray.decode import describe, describe_stream
+from seatrial_kits.videoray.command_decode import describe, describe_stream
 from seatrial_kits.videoray.frame import Frame, encode
 from seatrial_kits.videoray.player import StreamPlayer
 from seatrial_kits.videoray.stream_file import HEAD, Piece, StreamLog, read_stream

@@ -22,8 +22,6 @@ from .part_wrenches import (
     thrust_wrench,
 )
 
-TURNING = ("azimuth", "outboard", "jet")
-"""Kinds of propulsors that turn, if their range lets them."""
 BY_SPEED = ("propeller", "wageningen-b", "four-quadrant", "jet")
 """Kinds whose order is a share of the shaft speed: at rest their thrust goes by its square."""
 _NO_THRUST = tuple(PropulsorSlots.ports["propulsor_thrust_1"].start)
@@ -82,7 +80,7 @@ class AllocatedParts(PropulsorSlots, FoilSlots):
         self._foil_kinds = read_kinds(self.foils, "foil", FOILS)
         self._foils = [n for n, kind in enumerate(self._foil_kinds) if kind in STEERING]
         self._check_linear_fins()
-        self._ranges = [tuple(ends) for ends in self.propulsor_angle_limit]
+        self._ranges = [(least, most) for least, most in self.propulsor_angle_limit]
         self._first_angles = [self._at_rest(number) for number in range(COUNT)]
         self._reaches = [_reach(*thrust) for thrust in thrusts]
         self._fading = [
@@ -163,13 +161,13 @@ class AllocatedParts(PropulsorSlots, FoilSlots):
     def _turns(self, number: int) -> bool:
         """Return whether a propulsor turns, by itself or with another one."""
         least, most = self.propulsor_angle_limit[self._leaders[number]]
-        return self._kinds[number] in TURNING and bool(least < most)
+        return bool(least < most)
 
     def _at_rest(self, number: int) -> float:
         """Return the angle of a propulsor at the start: the one of its range nearest to 0."""
-        turns = number < len(self._kinds) and self._kinds[number] in TURNING
-        least, most = self._ranges[self._leaders[number] if turns else number]
-        return float(min(max(0.0, least), most)) if turns else 0.0
+        leader = self._leaders[number] if number < len(self._kinds) else number
+        least, most = self._ranges[leader]
+        return float(min(max(0.0, least), most))
 
     def _thrust(self, number: int, angle: float) -> Array:
         """Return the wrench of a propulsor at share 1."""

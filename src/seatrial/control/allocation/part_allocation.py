@@ -36,7 +36,7 @@ class PartAllocation(AllocatedParts, Sampled):
     holds. An order is sgn(T) (|T| / T_i)^(1/e), e = ``propulsor_exponent``, or 2 where the order
     is a share of the shaft speed (propeller, wageningen-b, four-quadrant, jet: K_T of J = 0).
 
-    **Those that turn** (azimuth, outboard, jet with a range of angles) are allocated twice. By
+    **Those that turn** (with a range of angles, of whatever kind) are allocated twice. By
     extended thrust, rectangular components within the circle of T_i, they find the angle that
     they should have (`angles_for`): no direction is singular, and the nearer of ahead and astern
     is taken where the thrust astern is enough. They turn there at ``propulsor_angle_rate``, the

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 import sys
 from functools import cache
+from pathlib import Path
 from typing import Any, TypeVar
 
 from lark import Lark, Token, Transformer, UnexpectedInput, v_args
@@ -21,74 +22,7 @@ from .metrics import ALL, metric
 from .predicates import Comparison, Says, Truth
 from .settling import DEFAULT_BAND, Settling
 
-GRAMMAR = r"""
-start: formula window?                           -> whole
-     | _WITHIN duration formula window?          -> within
-     | sum _SETTLES _WITHIN duration settling    -> settles
-window: _AFTER duration                          -> window
-      | _FROM duration _TO duration              -> window
-settling: (band after?)?                         -> settling
-        | after band?                            -> settling
-band: _TO quantity
-after: _AFTER duration
-
-?formula: either
-        | either _IMPLIES formula                -> implied
-?either: both
-       | either _OR both                         -> either
-?both: between
-     | both _AND between                         -> both
-?between: unary
-        | unary BETWEEN interval? unary          -> between
-?unary: comparison
-      | _NOT unary                               -> negated
-      | _FINALLY unary                           -> finally_
-      | OVER interval? unary                     -> over
-?comparison: sum
-           | sum COMPARE sum                     -> comparison
-           | SIGNAL VERB TEXT (_WITHIN duration)? -> says
-interval: "[" duration "," (duration | _END) "]"
-duration: quantity
-
-?sum: product
-    | sum SIGN product                           -> operation
-?product: factor
-        | product TIMES factor                   -> operation
-?factor: atom
-       | SIGN factor                             -> signed
-?atom: quantity
-     | SIGNAL                                    -> signal
-     | FUNCTION "(" sum ("," sum)* window? ")"   -> call
-     | "(" formula ")"
-quantity: NUMBER UNIT?
-
-COMPARE: "<=" | ">=" | "<" | ">"
-SIGN: "+" | "-"
-TIMES: "*" | "/"
-FUNCTION: /(@FUNCTIONS@)(?=\s*\()/
-OVER: /(always|eventually|once|historically)\b/
-BETWEEN: /(until|since)\b/
-VERB: /(says|is)\b/
-TEXT: /"([^"\\]|\\.)*"/
-NUMBER: /([0-9]+\.?[0-9]*|\.[0-9]+)([eE][-+]?[0-9]+)?/
-SIGNAL: /[A-Za-z_][A-Za-z0-9_]*(-[A-Za-z0-9_]+)*(\.[A-Za-z0-9_]+)+/
-UNIT: NO_KEYWORD UNIT_PART (("." | "/") UNIT_PART)*
-NO_KEYWORD: /(?!(and|or|not|implies|until|since|settles|after|from|to)\b)/
-UNIT_PART: /(%|°|[A-Za-zµμΩ]+(-?[0-9])?)/
-_FINALLY: /finally\b/
-_SETTLES: /settles\b/
-_WITHIN: /within\b/
-_AFTER: /after\b/
-_FROM: /from\b/
-_TO: /to\b/
-_END: /end\b/
-_IMPLIES: /implies\b/
-_AND: /and\b/
-_OR: /or\b/
-_NOT: /not\b/
-%ignore /\s+/
-"""
-
+DATA_FILES = ("grammar.lark",)
 MAX_DEPTH = 100
 
 _EXPECTED = {
@@ -125,7 +59,8 @@ def tree(text: str) -> Formula | Settling:
 def _parser() -> Lark:
     # The tables made of a grammar are kept: lark makes them again for another grammar or version.
     kept = cache_folder("grammars") / f"criteria-{sys.implementation.cache_tag}"
-    grammar = GRAMMAR.replace("@FUNCTIONS@", "|".join(map(re.escape, _functions())))
+    text = Path(__file__).with_name(DATA_FILES[0]).read_text("utf-8")
+    grammar = text.replace("@FUNCTIONS@", "|".join(map(re.escape, _functions())))
     return Lark(grammar, parser="lalr", transformer=_Builder(), cache=str(kept))
 
 

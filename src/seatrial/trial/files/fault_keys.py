@@ -1,4 +1,7 @@
-"""Keys of faults among settings: ``faults.0.at`` of a trial, ``faults.NAME.at`` of a campaign."""
+"""Keys among settings of faults and choices.
+
+``faults.0.at`` of a trial, ``faults.NAME.at`` of a campaign, ``choices.NAME``.
+"""
 
 from __future__ import annotations
 
@@ -8,6 +11,8 @@ from typing import Any
 from ...errors import InputError, unknown
 from ...system.fault_entry import FaultEntry
 
+CHOICES = "choices."
+"""What the key of a choice begins with, among settings."""
 PREFIX = "faults."
 
 
@@ -73,3 +78,17 @@ def _split(key: str, origin: str) -> tuple[str, str]:
 
 
 _KEYS = {field.alias or name: None for name, field in FaultEntry.model_fields.items()}
+
+
+def is_choice(key: str) -> bool:
+    """Return whether a key of settings is that of a choice."""
+    return key.startswith(CHOICES)
+
+
+def choices_in(changes: Mapping[str, Any], origin: str) -> dict[str, str]:
+    """Return the choices among settings, by name. Raises InputError for one that is no text."""
+    found = {k.removeprefix(CHOICES): v for k, v in changes.items() if is_choice(k)}
+    for name, value in found.items():
+        if not isinstance(value, str):
+            raise InputError(f"{origin}: {CHOICES}{name}: a text is needed, found {value!r}")
+    return found

@@ -11,7 +11,7 @@ from ...system.flattening import load_rig
 from ...system.paths import split_path
 from ...system.rig import Rig
 from ...system.system import System
-from .trial import choices_in
+from .fault_keys import choices_in
 
 _OF_RIG = ("step", "algorithm")
 

@@ -19,7 +19,7 @@ from ...system.rig import RIG_TABLES, Isolated, Rig, duration_ns
 from ...system.system import System
 from ...system.values import Setting
 from ..criteria.criteria import Criterion, parse
-from .fault_keys import PREFIX, with_fault_keys
+from .fault_keys import CHOICES, PREFIX, choices_in, is_choice, with_fault_keys
 from .scenario import Acted, Scenario, events_of, read_scenario
 from .seabed_entry import set_seabed, water_depth
 from .surroundings import GROUPS, SeaEntry, set_surroundings
@@ -315,11 +315,9 @@ def load_trial(
     return read(name, relative_to, changes, origin).changed(changes, origin)
 
 
-_CHOICES = "choices."
-"""What the key of a choice begins with, among settings."""
 _TABLES = (*GROUPS, "seabed")
 _PATTERNS = (
-    f"{_CHOICES}NAME",
+    f"{CHOICES}NAME",
     f"{PREFIX}N.KEY",
     *(f"{group}.KEY" for group in (*_TABLES, *RIG_TABLES)),
 )
@@ -328,20 +326,6 @@ _PATTERNS = (
 def _unexpected(criterion: dict[str, Any]) -> dict[str, Any]:
     """Return a criterion of a file without what is expected of it."""
     return {key: value for key, value in criterion.items() if key not in ("expect", "why")}
-
-
-def is_choice(key: str) -> bool:
-    """Return whether a key of settings is that of a choice."""
-    return key.startswith(_CHOICES)
-
-
-def choices_in(changes: Mapping[str, Any], origin: str) -> dict[str, str]:
-    """Return the choices among settings, by name. Raises InputError for one that is no text."""
-    found = {k.removeprefix(_CHOICES): v for k, v in changes.items() if is_choice(k)}
-    for name, value in found.items():
-        if not isinstance(value, str):
-            raise InputError(f"{origin}: {_CHOICES}{name}: a text is needed, found {value!r}")
-    return found
 
 
 def _rig(file: TrialFile, path: Path) -> Rig:
@@ -354,7 +338,7 @@ def _rig(file: TrialFile, path: Path) -> Rig:
 def _package(name: str, relative_to: Path | None, changes: Mapping[str, Any], origin: str) -> Trial:
     path = ((relative_to or Path.cwd()) / name).resolve()
     for choice in choices_in(changes, origin):
-        raise InputError(f"{origin}: {_CHOICES}{choice}: a package has no choices")
+        raise InputError(f"{origin}: {CHOICES}{choice}: a package has no choices")
     package = read_package(path, changes)
     stop = package.stop or changes.get("stop")
     if stop is None:

@@ -22,6 +22,7 @@ _SHIPPED = "_shipped"
 """Folder of the content in an installed package, which is counted by itself."""
 
 
+@cache
 def versions() -> dict[str, str]:
     """Return the versions of Python and of `LIBRARIES`."""
     found = {name: importlib.metadata.version(name) for name in LIBRARIES}

@@ -11,7 +11,7 @@ from seatrial.errors import InputError, unknown
 from seatrial.links.atmosphere import SEA_LEVEL_K, standard_pressure
 from seatrial.links.earth_field import earth_field
 from seatrial.links.geodesy import Origin
-from seatrial.links.parameter_validation import start_us, whole_number
+from seatrial.links.parameter_validation import start_date, start_us, whole_number
 from seatrial.links.unconnected import NOT_CONNECTED, is_connected
 from seatrial.model.component import NS, Input, Output, Parameter, Terminal, terminal
 from seatrial.physics.craft.kinematics import to_body
@@ -106,13 +106,7 @@ class DroneCanPeripheral(DroneCanNode):
     latitude = Parameter(0.0, "rad", "of the origin, WGS 84", min=-1.5707, max=1.5707)
     longitude = Parameter(0.0, "rad", "of the origin, WGS 84", min=-3.1416, max=3.1416)
     altitude = Parameter(0.0, "m", "of the origin")
-    date = Parameter(
-        "2026-01-01",
-        "1",
-        "UTC at the start of the run: a day, for its midnight, or an instant",
-        check=start_us,
-        role="start-time",
-    )
+    date = start_date()
 
     voltage = Input("V", "voltage at each ESC", axes=AXES, optional=True)
     current = Input("A", "current of each ESC", axes=AXES, optional=True)

@@ -11,7 +11,9 @@
 
 typedef struct {
     const char *guid;
-    size_t state_size, touched; /* `touched`: bytes of an instance that every step needs, from its start on */
+    size_t state_size;
+    size_t touched; /* bytes of an instance that most steps need, from its start on */
+    size_t values;  /* where its numbers by reference are */
     fmi2InstantiateTYPE *instantiate;
     fmi2FreeInstanceTYPE *free_instance;
     fmi2SetupExperimentTYPE *set_up;
@@ -40,6 +42,7 @@ const Carrier CARRIER = {
     MODEL_GUID,
     sizeof(State),
     TOUCHED_OF_INSTANCE,
+    offsetof(Instance, state.values),
     fmi2Instantiate,
     fmi2FreeInstance,
     fmi2SetupExperiment,

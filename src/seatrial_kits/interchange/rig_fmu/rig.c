@@ -76,6 +76,15 @@ fmi2Status rig_read(fmi2Component c, const fmi2ValueReference vr[], size_t count
     return status;
 }
 
+void rig_reseed(fmi2Component c, fmi2ValueReference parameter, double seed) {
+    const Variable *variable = rig_variables + parameter;
+    for (int i = 0; i < variable->targets; i++) {
+        const Target *target = rig_targets + variable->target + i;
+        char *component = ((Rig *)c)->components[target->node];
+        ((double *)(component + rig_nodes[target->node].carrier->values))[target->reference] = seed;
+    }
+}
+
 /* Let another value take the place of an output for all its readers, or end that; between steps. */
 void rig_override(fmi2Component c, fmi2ValueReference output, int begins, double value) {
     Rig *self = c;

@@ -57,6 +57,9 @@ void rig_lend(fmi2Component rig, Work *work);
 /* Values of numbers, of any type. */
 fmi2Status rig_read(fmi2Component rig, const fmi2ValueReference vr[], size_t count, double values[]);
 
+/* Let noise from now on be that of another seed: `parameter` is one of a component. */
+void rig_reseed(fmi2Component rig, fmi2ValueReference parameter, double seed);
+
 void rig_override(fmi2Component rig, fmi2ValueReference output, int begins, double value);
 
 extern const Node rig_nodes[];

@@ -49,8 +49,7 @@ from seatrial.trial.running.supervision import run_supervised
 
 from ..command_import import Begin, Checks, End, window_of
 from .asked import Asked, read_feeds
-from .compared import compared, describe, write_data
-from .page import write_page
+from .page import compared, describe, write_data, write_page
 from .preparing import Driven, Prepared, prepared
 
 

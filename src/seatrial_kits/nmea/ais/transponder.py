@@ -8,7 +8,7 @@ from typing import Any, ClassVar
 
 from seatrial.errors import InputError
 from seatrial.links.geodesy import Origin
-from seatrial.links.parameter_validation import start_us, whole_number
+from seatrial.links.parameter_validation import start_date, start_us, whole_number
 from seatrial.links.text import Inbox, Outbox
 from seatrial.links.unconnected import NOT_CONNECTED, is_connected
 from seatrial.model.component import NS, Component, Input, Noise, Output, Parameter, terminal
@@ -82,13 +82,7 @@ class AisTransponder(Noise, Component):
     latitude = Parameter(0.0, "rad", "of the origin, WGS 84", min=-1.5707964, max=1.5707964)
     longitude = Parameter(0.0, "rad", "of the origin, WGS 84", min=-3.1415927, max=3.1415927)
     altitude = Parameter(0.0, "m", "of the origin")
-    date = Parameter(
-        "2026-01-01",
-        "1",
-        "UTC at the start of the run: a day, for its midnight, or an instant",
-        check=start_us,
-        role="start-time",
-    )
+    date = start_date()
 
     rx = Input("1", "messages received, as text", type=str, role="bytes", optional=True)
     position_n = Input("m", "position, north-east-down", axes=_NED)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import ClassVar
 
 from seatrial.links.endpoints.url import check_urls
-from seatrial.links.parameter_validation import start_us
+from seatrial.links.parameter_validation import start_date
 from seatrial.links.unconnected import NOT_CONNECTED
 from seatrial.model.component import Input, Output, Parameter, Reachable, terminal
 from seatrial.model.sampled import Sampled
@@ -38,13 +38,7 @@ class Nmea0183Ports(received_outputs("received_"), Reachable, Sampled):  # type:
     latitude = Parameter(0.0, "rad", "of the origin, WGS 84", min=-1.5707964, max=1.5707964)
     longitude = Parameter(0.0, "rad", "of the origin, WGS 84", min=-3.1415927, max=3.1415927)
     altitude = Parameter(0.0, "m", "of the origin")
-    date = Parameter(
-        "2020-01-01",
-        "1",
-        "UTC at the start of the run: a day, for its midnight, or an instant",
-        check=start_us,
-        role="start-time",
-    )
+    date = start_date("2020-01-01")
     variation = Parameter(
         0.0, "rad", "magnetic variation, positive east", min=-3.1415927, max=3.1415927
     )

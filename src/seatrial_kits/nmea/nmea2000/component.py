@@ -22,7 +22,6 @@ from ..received.outputs import ORDERED, QUANTITIES
 from ..received.publishing import Publisher, position
 from ..received.targets import Targets
 from .address_claim import AddressClaim, Identity, name_of
-from .ais_reports import AIS_PGNS, report
 from .catalogue import ALL, DATA, READABLE, intervals, sends
 from .codec import GLOBAL, Decoder, Encoder, Message, header
 from .group_functions import serve
@@ -30,7 +29,7 @@ from .measurements import messages
 from .ports import Nmea2000Ports
 from .quantities import LATE, READERS
 from .services import HEARTBEAT_S, answer, heartbeat
-from .traffic import traffic
+from .traffic import AIS_PGNS, report, traffic
 
 _SIDS = 253
 """Sequence identifiers run from 0 to 252."""

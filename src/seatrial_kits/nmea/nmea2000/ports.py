@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any, ClassVar
 
-from seatrial.links.parameter_validation import start_us
+from seatrial.links.parameter_validation import start_date
 from seatrial.links.unconnected import NOT_CONNECTED
 from seatrial.model.component import Component, Input, Noise, Output, Parameter, terminal
 
@@ -61,13 +61,7 @@ class Nmea2000Ports(received_outputs("bus_"), Noise, Component):  # type: ignore
     latitude = Parameter(0.0, "rad", "of the origin, WGS 84", min=-_HALF_PI, max=_HALF_PI)
     longitude = Parameter(0.0, "rad", "of the origin, WGS 84", min=-_PI, max=_PI)
     altitude = Parameter(0.0, "m", "of the origin")
-    date = Parameter(
-        "2026-01-01",
-        "1",
-        "UTC at the start of the run: a day, for its midnight, or an instant",
-        check=start_us,
-        role="start-time",
-    )
+    date = start_date()
     heading_reference = Parameter(
         "true", "1", "north that the heading is counted from", choices=("true", "magnetic")
     )

@@ -5,7 +5,7 @@ import math
 import pytest
 
 from seatrial.errors import InputError
-from seatrial_kits.nmea.ais.traffic import read_traffic
+from seatrial_kits.nmea.ais.vhf_channel import read_traffic
 
 from .sea import KNOT, Sea
 

@@ -10,10 +10,10 @@ import pytest
 from nmea2000.backend import DATABASE
 from nmea2000.native_units import NATIVE_UNITS
 
-from seatrial_kits.nmea.nmea2000.ais_reports import AIS_PGNS, report
 from seatrial_kits.nmea.nmea2000.catalogue import READABLE
 from seatrial_kits.nmea.nmea2000.codec import Decoder, Encoder, Message
 from seatrial_kits.nmea.nmea2000.quantities import READERS
+from seatrial_kits.nmea.nmea2000.traffic import AIS_PGNS, report
 
 PADDING = ("RESERVED", "SPARE")
 CHOICES = {  # lookups that say what the other fields are: each of their numbers
