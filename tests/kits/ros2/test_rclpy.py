@@ -106,8 +106,8 @@ class Keeper(Node):
         east = 111_000.0 * math.cos(math.radians(fix.latitude)) * (self.goal[1] - fix.longitude)
         error = math.remainder(math.atan2(north, east) - self.yaw, math.tau)
         away = math.hypot(north, east)
-        ahead = 40.0 * min(away, 2.0) * max(0.0, math.cos(error)) if away > 0.7 else 0.0
-        turn = 60.0 * error - 120.0 * self.rate if away > 0.7 else -120.0 * self.rate
+        ahead = 15.0 * min(away, 2.0) * max(0.0, math.cos(error)) if away > 0.7 else 0.0
+        turn = 90.0 * error - 150.0 * self.rate if away > 0.7 else -150.0 * self.rate
         for publisher, share in zip(self.sides, (-1.0, 1.0)):
             publisher.publish(Float64(data=ahead + share * turn))
 
