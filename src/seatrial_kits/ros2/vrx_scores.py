@@ -31,7 +31,8 @@ class Score(Protocol):
 def pose_error(position: Place, heading: float, goal: Place, goal_heading: float) -> float:
     """Return d + 0.75^d |psi - psi_goal|: the distance in m, the angle in rad, 0 to pi."""
     distance = math.dist(position[:2], goal[:2])
-    return distance + _SHARE**distance * abs(math.remainder(goal_heading - heading, math.tau))
+    turn = abs(math.remainder(goal_heading - heading, math.tau))
+    return distance + math.pow(_SHARE, distance) * turn
 
 
 class StationKeeping:
