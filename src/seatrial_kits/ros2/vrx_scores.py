@@ -20,9 +20,11 @@ class Score(Protocol):
     """What a task has of the vehicle's motion."""
 
     value: float
-    errors: list[float]
-    """Of the pose at each goal, now or the least so far; of gates their states, as `Gates` says."""
     done: bool
+
+    @property
+    def errors(self) -> list[float]:
+        """Of the pose at each goal, now or the least so far; of gates their states."""
 
     def add(self, position: Place, heading: float) -> None:
         """Take in the pose of one instant."""
@@ -38,9 +40,8 @@ def pose_error(position: Place, heading: float, goal: Place, goal_heading: float
 class StationKeeping:
     """Mean pose error at the first goal, of all instants."""
 
-    done = False
-
     def __init__(self, goals: Sequence[Place], headings: Sequence[float]) -> None:
+        self.done = False
         self._goal, self._heading = goals[0], headings[0]
         self.value, self.errors = 0.0, [0.0]
         self._total, self._count = 0.0, 0
@@ -56,9 +57,8 @@ class StationKeeping:
 class Wayfinding:
     """Mean, over the goals, of the least pose error so far; in any order."""
 
-    done = False
-
     def __init__(self, goals: Sequence[Place], headings: Sequence[float]) -> None:
+        self.done = False
         self._goals = [*zip(goals, headings, strict=True)]
         self.value, self.errors = 0.0, [math.inf] * len(goals)
 
