@@ -124,7 +124,8 @@ def cost() -> list[float]:
 def latencies() -> tuple[list[float], list[float], list[float]]:
     """Return how late instants are, commands are taken in, and commands act, s, sorted."""
     made, late, taken, acted = link(LINKS[0]), [], [], []
-    pending, last = [], time.monotonic()
+    pending: list[float] = []
+    last = time.monotonic()
     with beside(command):
         pacer = Pacer(1.0, "slip")
         pacer.start(0)

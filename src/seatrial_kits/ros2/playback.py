@@ -58,7 +58,9 @@ def play(run: Run, stop_requested: Callable[[], int]) -> int:
         }
         if not topics:
             raise InputError(f"{run.folder} has no craft: there is nothing to play to nodes")
-        messages = heapq.merge(*(_messages(r, topics) for r in readers), key=itemgetter(0))
+        messages: Iterator[Message] = heapq.merge(
+            *(_messages(reader, topics) for reader in readers), key=itemgetter(0)
+        )
         if export:
             topics[_CLOCK.name] = _CLOCK.kind
             messages = _with_clock(messages)

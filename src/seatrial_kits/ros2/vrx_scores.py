@@ -20,9 +20,11 @@ class Score(Protocol):
     """What a task has of the vehicle's motion."""
 
     value: float
-    errors: list[float]
-    """Of the pose at each goal, now or the least so far; of gates their states, as `Gates` says."""
     done: bool
+
+    @property
+    def errors(self) -> list[float]:
+        """Of the pose at each goal, now or the least so far; of gates their states."""
 
     def add(self, position: Place, heading: float) -> None:
         """Take in the pose of one instant."""
@@ -31,15 +33,15 @@ class Score(Protocol):
 def pose_error(position: Place, heading: float, goal: Place, goal_heading: float) -> float:
     """Return d + 0.75^d |psi - psi_goal|: the distance in m, the angle in rad, 0 to pi."""
     distance = math.dist(position[:2], goal[:2])
-    return distance + _SHARE**distance * abs(math.remainder(goal_heading - heading, math.tau))
+    turn = abs(math.remainder(goal_heading - heading, math.tau))
+    return distance + math.pow(_SHARE, distance) * turn
 
 
 class StationKeeping:
     """Mean pose error at the first goal, of all instants."""
 
-    done = False
-
     def __init__(self, goals: Sequence[Place], headings: Sequence[float]) -> None:
+        self.done = False
         self._goal, self._heading = goals[0], headings[0]
         self.value, self.errors = 0.0, [0.0]
         self._total, self._count = 0.0, 0
@@ -55,9 +57,8 @@ class StationKeeping:
 class Wayfinding:
     """Mean, over the goals, of the least pose error so far; in any order."""
 
-    done = False
-
     def __init__(self, goals: Sequence[Place], headings: Sequence[float]) -> None:
+        self.done = False
         self._goals = [*zip(goals, headings, strict=True)]
         self.value, self.errors = 0.0, [math.inf] * len(goals)
 
