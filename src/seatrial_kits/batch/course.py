@@ -52,12 +52,12 @@ class Course:
         self._acts: dict[int, list[_Act]] = {}
         taken: dict[str, list[tuple[float, float]]] = {}
         for event in made.events:
-            self._add(event.at_ns, step_ns, _Act("set", event.key, event.written))
             for name in made.named(event.key):
                 for part, port in made.system.located(name, "set"):
                     taken[f"{part.name}.{port}"] = [(0.0, math.inf)]
         entries = made.trial.file.faults if made.trial else []
-        for index, (entry, fault) in enumerate(zip(entries, made.faults, strict=True)):
+        faults = [*enumerate(zip(entries, made.faults, strict=True))]
+        for index, (entry, fault) in sorted(faults, key=lambda each: each[1][1].begin_ns):
             assert made.trial is not None
             origin = f"{made.trial.read_from.path}: faults.{index}"
             span = fault.begin_ns, math.inf if fault.end_ns is None else fault.end_ns
@@ -78,6 +78,8 @@ class Course:
                 self._add(fault.begin_ns, step_ns, begin)
                 if fault.end_ns is not None:
                     self._add(fault.end_ns, step_ns, end)
+        for event in made.events:  # after faults, as the master and its caller have them
+            self._add(event.at_ns, step_ns, _Act("set", event.key, event.written))
 
     def __bool__(self) -> bool:
         return bool(self._acts)

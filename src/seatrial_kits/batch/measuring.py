@@ -162,10 +162,10 @@ def _made(trial: Trial, values: Mapping[str, Any]) -> _Program:
 def _run(trial: Trial, program: _Program, hooks: Hooks) -> Measured | None:
     names = watched_signals(trial)
     batch, steps, seed = program.batch, trial.steps, trial.file.seed
-    if batch.failures:  # an event of the start has ended it: its values mean nothing
-        return None
     ends = _Ends(trial, names, program.units)
     blocks = [batch.get(*names).reshape(1, -1) if names else np.empty((1, 0))]
+    if batch.failures:  # an event of the start has ended it, as its values show once they are read
+        return None
     taken, status = 0, ends.status(blocks[0])[0]
     while status is None and taken < steps:
         if hooks.stop_requested():

@@ -1,4 +1,4 @@
-"""What callers give with a row for each copy, checked: masks, seeds, numbers of copies."""
+"""Masks, seeds and numbers of copies, with a row for each: checked arrays of what callers give."""
 
 from __future__ import annotations
 

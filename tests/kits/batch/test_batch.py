@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from seatrial import Batch, InputError, Simulation, run_trial
@@ -439,6 +439,8 @@ FAULTS = [
 
 
 @settings(max_examples=12)
+@example(fault=FAULTS[5], at=0, lasts=1, seed=1)  # with the events of the trial
+@example(fault=FAULTS[5], at=10, lasts=9, seed=1)
 @given(
     fault=st.sampled_from(FAULTS),
     at=st.integers(0, 30),
