@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 from typer.main import get_command
 
-from seatrial.cli.commands import COMMANDS, loaded
+from seatrial.cli.commands import commands, loaded
 from seatrial.cli.main import app
 
 HEAVY = {
@@ -66,8 +66,8 @@ def test_a_run_imports_what_it_uses(engine: str, own: set[str], tmp_path: Path) 
     assert (tmp_path / "run" / "report.html").is_file()
 
 
-@pytest.mark.parametrize("name", sorted(COMMANDS))
+@pytest.mark.parametrize("name", sorted(commands()))
 def test_the_listing_says_what_the_command_says(name: str) -> None:
     listed = get_command(app).commands[name].help  # type: ignore[attr-defined]
     said = (loaded(name).help or "").partition("\n")[0]
-    assert listed == said == COMMANDS[name].help
+    assert listed == said == commands()[name].help

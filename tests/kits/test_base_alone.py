@@ -18,7 +18,7 @@ import pytest
 from packaging.requirements import Requirement
 from packaging.utils import canonicalize_name
 
-from seatrial.cli.examples import examples
+from seatrial.cli.commands import examples
 from seatrial.kits import LIBRARIES, kits
 
 pytestmark = pytest.mark.interop
