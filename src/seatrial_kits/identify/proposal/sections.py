@@ -38,7 +38,7 @@ def heave_mass(beam: float, draught: float, fullness: float, density: float) -> 
     """Return the added mass in heave at high frequency, kg/m.
 
     rho pi / 8 b^2 ((1 + a1)^2 + 3 a3^2) / (1 + a1 + a3)^2: half of the doubled section's
-    ([Landweber1957]).
+    (map of [Lewis1929]).
     """
     a1, a3 = lewis(beam, draught, fullness)
     shape = ((1.0 + a1) ** 2 + 3.0 * a3**2) / (1.0 + a1 + a3) ** 2
