@@ -40,7 +40,10 @@ SECTIONS = {
     )
 }
 EACH = [(vehicle, section) for vehicle, sections in SECTIONS.items() for section in sections]
-ERRORS = ("_noise", "_bias", "_instability", "_resolution", "delay", "dropout", "deviation")
+ERRORS = (
+    "_noise", "_bias", "_instability", "_resolution", "_scale", "delay", "dropout", "deviation",
+    "attitude_time",
+)  # fmt: skip
 WIND_TO = math.radians(150.0)
 REST = {
     "position": [10.0, -20.0, 2.0],

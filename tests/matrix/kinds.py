@@ -162,4 +162,5 @@ _KINDS = {
         excuses={"unplug": COME_AND_GO},
     ),
     "ros2": Kind("ros2", Peer, "", excuses={"*": NODES}),
+    "vrx-task": Kind("vrx-task", Peer, "", excuses={"*": NODES}),
 }

@@ -33,7 +33,7 @@ EXCUSED = {
     reasons.NO_PORT: 6,
     reasons.ALONE: 2,
     reasons.NAMESPACE: 7,
-    reasons.NODES: 7,
+    reasons.NODES: 14,
 }
 """Kinds and events that do not apply, by their reason; each with every carrier."""
 KEPT = hasattr(run_options, "HangAfter")
