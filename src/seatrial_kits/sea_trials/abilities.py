@@ -28,8 +28,8 @@ def reason_against(trial: Trial) -> str | None:
 
     Guidance tells: whether speed orders go on from it, ``staying``, and ``depth_control``. A pilot
     with ``depth-by-pitch`` pitches, and has no bollard pull: without speed its fins hold neither
-    pitch nor depth. A line with a stiffness moors. Raises InputError for a rig
-    that does not go together.
+    pitch nor depth. A line with a stiffness moors. Raises InputError for a rig that does not go
+    together.
     """
     choices = dict(trial.file.choices)
     needed = NEEDS.get(choices.pop("manoeuvre", ""), STEERS)

@@ -19,8 +19,6 @@ _SETTLED = 0.1
 """Share of a stretch, at its end, over which a steady rate is a mean."""
 _FOUND = 0.4
 """The same of a reverse spiral: the helm moves about the one that is found."""
-_COINCIDE = 0.02
-"""Share of the fastest rate within which two rates are one."""
 
 
 @dataclass(frozen=True)
@@ -58,7 +56,7 @@ def pull_out(record: Record, order: float) -> Figures:
     return found.figures()
 
 
-def is_stable(starboard: float, port: float, before: float, share: float = _COINCIDE) -> bool:
+def is_stable(starboard: float, port: float, before: float, share: float = 0.02) -> bool:
     """Return whether the residual rates after pull-outs from both sides agree, rad/s.
 
     They agree within a ``share`` of the rate ``before``, of the steady turn.
@@ -141,8 +139,7 @@ def loop(helm: Any, rate: Any) -> Loop:
     ``helm`` (n,), rad, and ``rate`` (n,) are in the order of the steps, the turning point of the
     helm between. Each branch is linear between its steps. The height is the difference of the
     branches at helm 0; the width the range of helm in which they differ by more than a tenth of
-    the height. Both are 0 for branches that coincide, to 2 % of the largest rate, as pull-outs do
-    of a stable vessel.
+    the height. Both are 0 for branches that coincide, to 1 % of the largest rate.
 
     Raises InputError for a spiral with one branch only, or branches that do not enclose helm 0.
     """
@@ -161,7 +158,7 @@ def loop(helm: Any, rate: Any) -> Loop:
     at = np.linspace(low, high, 2001)
     apart = np.abs(np.interp(at, *branches[0]) - np.interp(at, *branches[1]))
     height = float(np.interp(0.0, at, apart))
-    if height <= _COINCIDE * float(np.abs(rate).max()):
+    if height <= 0.01 * float(np.abs(rate).max()):
         return Loop(0.0, 0.0)
     inside = at[apart > 0.1 * height]
     return Loop(height, float(inside[-1] - inside[0]))
