@@ -135,6 +135,7 @@ class Simulation:
         while count:
             self._refuse_ended()
             try:
+                self._master.meet_arrivals()
                 most = 1 if self._observers else steps_ahead(self._made, self._master, count)
                 count -= self._master.advance(most)
                 act_on(self._made, self._master)

@@ -74,7 +74,11 @@ class Commands:
             for each in self.actuators
         }
 
-    def orders(self, now: float, measured: float, depth: float) -> tuple[str, Orders]:
+    def measured(self, heading: float, depth: float) -> None:
+        """Take the vehicle's heading, rad, and depth, m, of an instant, for the velocities."""
+        self._velocity.measured(heading, depth)
+
+    def orders(self, now: float) -> tuple[str, Orders]:
         """Return what commands the pilot, and its orders; at rest ``none``."""
         link = self._link
         valid = {
@@ -103,7 +107,7 @@ class Commands:
         twist = message.twist if key == "cmd_vel_stamped" else message
         if twist.linear.y:
             self._once(f"{valid[key].name}: linear.y is not followed: this pilot has no sway")
-        return "cmd_vel", self._velocity.orders(twist, measured, depth, link.period)
+        return "cmd_vel", self._velocity.orders(twist, link.period)
 
     def _value(self, actuator: Actuator, now: float) -> float | None:
         ways = [

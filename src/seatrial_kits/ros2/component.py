@@ -5,7 +5,7 @@ from __future__ import annotations
 import logging
 import math
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar
 
 from seatrial.errors import InputError
 from seatrial.links.earth_field import earth_field
@@ -36,13 +36,13 @@ from .topics import Names
 _LOGGER = logging.getLogger("seatrial.ros2")
 _LEG_RADIUS = 3.0
 """Distance at which the end of a leg is reached that says none, m."""
+_PILOTED = ("piloted_pulse", "piloted_share", "piloted_angle")
 
 
 class Ros2(Ros2Ports):
     """A vehicle among the nodes of ROS 2, over DDS: no ROS installation is needed.
 
-    Every ``period`` it writes the clock, the truth and what sensors measured, and takes in the
-    commands that have come, which are on the outputs from the instant after. Topics are below
+    Every ``period`` it writes the clock, the truth and what sensors measured. Topics are below
     ``/NAMESPACE``, unless ``topics`` names them otherwise (`topics`, `published`).
 
     **Axes** are those of REP 103 and 105: map and odom east-north-up, base_link ahead-left-up in
@@ -53,8 +53,10 @@ class Ros2(Ros2Ports):
     ``timeout`` of simulated time, they are neutral: actuators at rest, the pilot disarmed.
     Numbers that are not finite, and a second publisher of one topic, are ``refused``.
 
-    **Free running** a command acts at the instant after it came. In **lockstep** the step waits
-    for the commands that are ``awaited`` (`Lockstep`): then every run has the same numbers.
+    **Free running** outputs have, at each instant, all commands that came until they are read;
+    velocities are added to heading and depth as measured an instant before. In **lockstep** the
+    step waits for the commands that are ``awaited`` (`Lockstep`), which are on the outputs from
+    the instant after: then every run has the same numbers.
 
     With ``bag`` = "on" all that it writes is kept as a bag too, NAME in the run's folder.
 
@@ -68,6 +70,11 @@ class Ros2(Ros2Ports):
     """
 
     rolls_back = False
+    feedthrough: ClassVar = {
+        name: _PILOTED if name in ("pulse", "share", "angle") else ()
+        for name, port in Ros2Ports.ports.items()
+        if port.kind == "output"
+    }
     transient = Sampled.transient | {
         "_participant",
         "_outlet",
@@ -113,6 +120,13 @@ class Ros2(Ros2Ports):
         self._diagnosed_ns = self._boot_ns
         self._orders, self._source, self._reached = Orders(), "none", 0
         self._direct: dict[str, float] | None = None
+        self._received = -1.0
+
+    def outputs(self, t: float) -> None:
+        """Take in what has come, unless it is awaited, and publish."""
+        if self._commands is not None and self._instant_ns() == round(t * NS):
+            self._receive(self._commands, t)
+        super().outputs(t)
 
     def sample(self, t: float, k: int) -> None:
         """Publish what the vehicle was commanded until now."""
@@ -138,7 +152,7 @@ class Ros2(Ros2Ports):
         self.reached_at = f"ros2://{self._participant.domain}{self._names.namespace}"
 
     def update(self, t: float, k: int) -> None:
-        """Write what is due, and take in what has come, or wait for it."""
+        """Write what is due; in lockstep wait for the answer."""
         now_ns = self._boot_ns + round(t * NS)
         here = Here(now_ns, self.frame_prefix, self._origin, self._field, self._instruments)
         if self.bag == "on" and self.run_folder and self._bag is None:
@@ -149,12 +163,15 @@ class Ros2(Ros2Ports):
         if self._lockstep is not None:
             self._lockstep.meet(self._outlet.matches)
         self._outlet.write(self, here)
-        waited = () if self._lockstep is None else self._lockstep.awaited
-        commands.take_newest(t, now_ns, but=waited)
+        if self._received != t:  # between two communication points
+            self._receive(commands, t)
+        heading: Any = self.heading if is_connected(self.heading) else self.true_attitude[2]
+        commands.measured(heading, self.depth if is_connected(self.depth) else 0.0)
         if self._lockstep is not None:
+            commands.take_newest(t, now_ns, but=self._lockstep.awaited)
             self._lockstep.wait(t, now_ns, self._outlet.write_again)
+            self._follow(commands, t)
         self._mismatches.look(commands.read, self._outlet.written, self._outlet.latched)
-        self._follow(commands, t)
         self._serve(now_ns)
         self._diagnose(now_ns)
         place = self.position_n if is_connected(*self.position_n) else self.true_position
@@ -211,15 +228,19 @@ class Ros2(Ros2Ports):
         acting = {} if self._faults is None else self._faults.acting
         self._outlet.put("diagnostics", diagnostics(self, self._names, now_ns, acting), now_ns)
 
+    def _receive(self, commands: Commands, t: float) -> None:
+        if self._lockstep is None:
+            commands.take_newest(t, self._boot_ns + round(t * NS))
+            self._follow(commands, t)
+            self._received = t
+
     def _follow(self, commands: Commands, t: float) -> None:
         before = self._source
         self._direct = commands.direct(t)
         if self._direct is not None:
             self._source, self._orders = "thrusters", Orders()
         else:
-            measured: Any = self.heading if is_connected(self.heading) else self.true_attitude[2]
-            depth = self.depth if is_connected(self.depth) else 0.0
-            self._source, self._orders = commands.orders(t, measured, depth)
+            self._source, self._orders = commands.orders(t)
         if self._source != before:
             self.order = f"{t!r} {self._source}"
             if self._source == "none":

@@ -184,7 +184,7 @@ class Ros2Ports(Logging, Reachable, TrueMotion, Sampled):
     angle = Output("rad", "angles, the pilot's or as commanded", axes=ANGLED)
     source = Output(
         "1", "what commands: none, thrusters, cmd_vel, cmd_wrench or goal_pose", type=str,
-        start="none",
+        start="none", role="arrivals",
     )  # fmt: skip
     mode = Output("1", "mode of the pilot: hold, manual or guided", type=str, start="hold")
     armed = Output("1", "whether the pilot acts", type=bool)

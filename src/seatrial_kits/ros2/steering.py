@@ -32,30 +32,38 @@ class VelocityOrders:
     """A Twist as a heading that turns, a speed along the bow, and a depth that changes.
 
     psi' = -angular.z, z' = -linear.z, from those of the vehicle when the command began; the
-    heading wanted is at most 60 degrees ahead of the vehicle's.
+    heading wanted is at most 60 degrees ahead of the vehicle's. Once per instant it is told what
+    is measured; orders may be asked for again as commands come.
     """
 
     def __init__(self) -> None:
-        self._heading: float | None = None
-        self._depth = 0.0
+        self._heading = self._depth = 0.0
+        self._begun: tuple[float, float] | None = None
+        """Heading and depth wanted at the last instant; None without a command."""
+        self._wanted: tuple[float, float] | None = None
+
+    def measured(self, heading: float, depth: float) -> None:
+        """Take heading, rad, and depth, m, of an instant."""
+        self._heading, self._depth = heading, depth
+        self._begun = self._wanted
 
     def stop(self) -> None:
         """Begin anew with the next command."""
-        self._heading = None
+        self._wanted = None
 
-    def orders(self, twist: Any, measured: float, depth: float, period: float) -> Orders:
-        """Return the orders of one instant; ``measured`` is the heading, rad."""
-        if self._heading is None:
-            self._heading, self._depth = measured, depth
-        ahead = math.remainder(self._heading - measured, math.tau) - twist.angular.z * period
-        self._heading = measured + min(max(ahead, -_LEAD), _LEAD)
-        self._depth -= twist.linear.z * period
+    def orders(self, twist: Any, period: float) -> Orders:
+        """Return the orders from an instant, s, after the last measurement on."""
+        heading, depth = self._begun or (self._heading, self._depth)
+        ahead = math.remainder(heading - self._heading, math.tau) - twist.angular.z * period
+        heading = self._heading + min(max(ahead, -_LEAD), _LEAD)
+        depth -= twist.linear.z * period
+        self._wanted = heading, depth
         return Orders(
             "guided",
             target_kind="heading",
             target_valid=True,
-            target_position=(0.0, 0.0, self._depth),
-            target_heading=math.remainder(self._heading, math.tau),
+            target_position=(0.0, 0.0, depth),
+            target_heading=math.remainder(heading, math.tau),
             target_speed=float(twist.linear.x),
         )
 

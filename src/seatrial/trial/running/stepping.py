@@ -210,6 +210,7 @@ class Pace:
         pacer.pause(round((paused - self._paused) * NS))
         self._paused = paused
         lateness = pacer.keep(master.time_ns, stop_requested)
+        master.meet_arrivals()
         if lateness and pacer.policy == "abort":
             spent = {name: t.total_ns - before[name] for name, t in master.step_times.items()}
             slowest = max(spent, key=spent.__getitem__)
