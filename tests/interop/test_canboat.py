@@ -481,6 +481,7 @@ FROM_CANBOAT = {
     130312: {"water_temperature": "actualTemperature", "air_temperature": "actualTemperature"},
     130313: {"humidity": "actualHumidity"},
     130314: {"air_pressure": "pressure"},
+    130315: {"set_pressure": "pressure"},
     130316: {"water_temperature": "temperature", "air_temperature": "temperature"},
 }
 """Fields of canboat's that quantities are, by PGN."""
@@ -491,7 +492,8 @@ REPORTS = {
     129038: AIS_FIELDS | {"heading": "heading"},
     129039: AIS_FIELDS | {"heading": "heading"},
     129040: AIS_FIELDS | {"heading": "trueHeading", "length": "length", "beam": "beam"},
-    129041: {"latitude": "latitude", "longitude": "longitude", "length": "lengthDiameter"},
+    129041: {"latitude": "latitude", "longitude": "longitude"}
+    | {"length": "lengthDiameter", "beam": "beamDiameter"},
     129809: {},
     129810: {"length": "length", "beam": "beam"},
 }
@@ -556,3 +558,55 @@ def test_quantities_are_those_of_canboat_whatever_is_absent(pgn):
             if isinstance(field, str) and fields.get(field) is not None and name in read:
                 assert read[name] is not None, name
     assert seen >= {n for n in names if n != "name"} - {"ground_wind_angle"} or pgn in REPORTS
+
+
+@pytest.mark.parametrize(
+    ("pgn", "length", "beam", "name"),
+    [
+        (129040, "length", "beam", "name"),
+        (129041, "lengthDiameter", "beamDiameter", "atonName"),
+        (129809, None, None, "name"),
+        (129810, "length", "beam", None),
+    ],
+)
+def test_names_and_sizes_of_stations_are_on_the_outputs(pgn, length, beam, name):
+    """Messages that canboat writes; a node shows what canboat reads in their frames."""
+    rng = random.Random(pgn)
+    network = Network({"node": {}})
+    network.run(1.0)
+    place = {"userId": 244670316, "latitude": 0.01, "longitude": 0.02}
+    given = {length: rng.uniform(5, 300), beam: rng.uniform(2, 40), name: "NOORD 12"}
+    fields = place | {field: value for field, value in given.items() if field is not None}
+    if pgn > 129800:  # static data have no place
+        (report,) = canboat.encoded([{"pgn": 129039, "src": 7, "dst": 255, "fields": place}])
+        for frame in report:
+            network.send(frame)
+        network.run(0.1)
+        del fields["latitude"], fields["longitude"]
+    (frames,) = canboat.encoded([{"pgn": pgn, "src": 7, "dst": 255, "prio": 4, "fields": fields}])
+    for frame in frames:
+        network.send(frame)
+    network.run(0.1)
+    (read,) = (m["fields"] for m in canboat.decoded(enumerate(frames)))
+    node = network.nodes["node"]
+    assert node.get("bus_ais_mmsi")[0] == read["userId"]
+    for port, field in (("length", length), ("beam", beam)):
+        if field is not None:
+            assert read[field] == pytest.approx(given[field], abs=0.0501)
+            assert node.get(f"bus_ais_{port}")[0] == pytest.approx(read[field], abs=1e-9)
+    if name is not None:
+        assert node.get("bus_ais_names") == f"244670316 {read[name]}"
+
+
+def test_a_pressure_that_is_set_is_on_the_outputs():
+    network = Network({"node": {}})
+    network.run(1.0)
+    fields = {"instance": 1, "source": "Hydraulic", "pressure": 1234567.8}
+    (frames,) = canboat.encoded([{"pgn": 130315, "src": 7, "dst": 255, "fields": fields}])
+    network.send(*frames)
+    network.run(0.1)
+    (read,) = (m["fields"] for m in canboat.decoded(enumerate(frames)))
+    node = network.nodes["node"]
+    assert node.get("bus_set_pressure_valid")
+    assert node.get("bus_set_pressure") == pytest.approx(read["pressure"], abs=1e-6)
+    assert read["pressure"] == pytest.approx(fields["pressure"], abs=0.0501)

@@ -119,7 +119,9 @@ def _replayed(craft: Craft, vehicle: str, variant: str | None, run: Pass) -> tup
             reached.append(master.values(craft.name, craft.fed))
             _advance(master, count, run)
     shown = np.searchsorted(at, _SETTLING)
-    return np.array(at[shown:]) - _SETTLING + run.record.start, np.array(reached[shown:])
+    # What reaches the craft at t holds until the next step: it is the value of that step's middle.
+    middles = np.array(at[shown:]) + 0.5 * system.rig.step_ns / NS
+    return middles - _SETTLING + run.record.start, np.array(reached[shown:])
 
 
 def _advance(master: Master, steps: int, run: Pass) -> None:

@@ -54,10 +54,7 @@ ALL = {**DATA, **READ, **NETWORK}
 READABLE = dict(sorted((DATA | READ).items()))
 """Messages about the vessel and what is round it, those that a node only reads too."""
 
-RECEIVED = (
-    *(number for number, pgn in READABLE.items() if any(f.received for f in pgn.fields)),
-    130315,
-)
+RECEIVED = tuple(n for n, pgn in READABLE.items() if any(f.received for f in pgn.fields))
 """Messages about the vessel that a node reads."""
 
 

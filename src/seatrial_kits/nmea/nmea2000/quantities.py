@@ -221,10 +221,10 @@ READERS: dict[int, Callable[[Fields], Values]] = {
     130312: lambda f: _temperature(f, "actualTemperature"),
     130313: lambda f: _humidity(f, "actualHumidity", "source"),
     130314: _pressure,
-    130315: lambda _: {},
+    130315: _alone(set_pressure="pressure"),
     130316: lambda f: _temperature(f, "temperature"),
 }
-"""By PGN. 130315 is a pressure that is set, which nothing here has."""
+"""By PGN."""
 
 LATE: dict[int, tuple[str, ...]] = {
     127237: ("heading", "magnetic_heading"),

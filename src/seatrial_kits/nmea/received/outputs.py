@@ -35,6 +35,7 @@ SINGLE: dict[str, tuple[str, str]] = {
     "water_temperature": ("K", "temperature of the water"),
     "air_temperature": ("K", "temperature of the air outside"),
     "air_pressure": ("Pa", "pressure of the air"),
+    "set_pressure": ("Pa", "pressure that a device is set to"),
     "humidity": ("1", "relative humidity of the air outside"),
 }
 """Quantities of one value that go to outputs of their name as they are: unit and description."""
