@@ -1,10 +1,11 @@
 """Cost and latency of the ROS 2 link: ``python -m benchmarks.ros2``.
 
 Cost: two links with ten sensors each, all of which change at 100 Hz, read by a process of its own.
-The share is the CPU time of all threads over simulated time. Latency: a process commands a link
-that runs in real time; each velocity is the time of the clock of both as it is written. Times
-depend on the machine: the time of one addition in a loop is beside them. ``--write`` puts the table
-into docs/kits/ros2/ros2.md.
+The share is the CPU time of all threads over simulated time. Latency: a process commands a link of
+a trial in real time, and another one notes when each command is received; a component behind the
+link notes the wall time at which the step with the command begins. Times depend on the machine: the
+time of one addition in a loop is beside them. ``--write`` puts the table into
+docs/kits/ros2/ros2.md.
 """
 
 from __future__ import annotations
@@ -12,13 +13,19 @@ from __future__ import annotations
 import argparse
 import multiprocessing
 import statistics
+import subprocess
+import sys
+import tempfile
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from multiprocessing.queues import Queue
 from multiprocessing.synchronize import Event
+from pathlib import Path
+from typing import Any
 
+import seatrial
 from seatrial.model.component import Component
-from seatrial.sim.clock import Pacer
 from seatrial_kits.ros2.component import Ros2
 from seatrial_kits.ros2.packing import packed
 from seatrial_kits.ros2.participant import Participant
@@ -36,8 +43,44 @@ SENSORS = {
 """Topics that are measured, and the input that moves each."""
 VALID = ("depth", "velocity_b", "water_speed", "water_depth", "wind")
 ROUNDS, STEPS, SECONDS = 5, 500, 20
-TWIST, SCALE = COMMANDED["cmd_vel"], 1e-6
-"""Commands, and the velocity of a second, m/s."""
+TWIST = COMMANDED["cmd_vel"]
+PROBE = '''
+import time
+from seatrial.model.component import Component, Input, Output
+
+class Probe(Component):
+    """The speed with which each step is taken, and the wall time at which it begins, s."""
+    discrete = True
+    speed = Input("m/s", "speed along the bow")
+    used = Output("m/s", "the speed of the last step")
+    begun = Output("s", "wall time at its beginning")
+
+    def start(self, t):
+        self._used = self._begun = 0.0
+
+    def step(self, t, h):
+        self._used, self._begun = self.speed, time.monotonic()
+
+    def outputs(self, t):
+        self.used, self.begun = self._used, self._begun
+'''
+RIG = """
+step = "%(period)s s"
+[components]
+probe = { fmu = "probe.py:Probe" }
+link = { fmu = "ros2", set = { namespace = "left", domain = %(domain)d, period = "%(period)s s" } }
+[connections]
+"link.target_speed" = "probe.speed"
+"probe.used" = "link.water_speed"
+"""
+TRIAL = """
+rig = "rig.toml"
+stop = "%(seconds)d s"
+[record]
+signals = ["probe.*"]
+[real_time]
+overrun = "slip"
+"""
 
 
 def link(name: str) -> Ros2:
@@ -76,22 +119,44 @@ def read(ready: Event, done: Event) -> None:
     participant.close()
 
 
-def command(ready: Event, done: Event) -> None:
-    """Command the first link at 47 Hz by the time, until it is ``done``."""
-    participant = Participant(DOMAIN)
+def command(ready: Event, done: Event, domain: int, interval: float) -> None:
+    """Command the first link by growing velocities, until it is ``done``."""
+    participant = Participant(domain)
     writer = participant.writer(Names(LINKS[0], "").full(TWIST.name), TWIST.kind)
     ready.set()
-    while not done.wait(0.0213):
-        writer.write(packed(TWIST.kind, {"linear": (SCALE * time.monotonic(), 0.0, 0.0)}))
+    sent = 0
+    while not done.wait(interval):
+        sent += 1
+        writer.write(packed(TWIST.kind, {"linear": (1e-3 * sent, 0.0, 0.0)}))
+    participant.close()
+
+
+def witness(ready: Event, done: Event, domain: int, received: Queue[Any]) -> None:
+    """Note at which wall time each velocity is received, until it is ``done``."""
+    from cyclonedds.core import ReadCondition, SampleState, ViewState, WaitSet
+    from cyclonedds.util import duration
+
+    participant = Participant(domain)
+    reader = participant.reader(Names(LINKS[0], "").full(TWIST.name), TWIST.kind)
+    waiting, found = WaitSet(participant.dds), {}
+    waiting.attach(ReadCondition(reader, SampleState.NotRead | ViewState.Any))
+    ready.set()
+    while not done.is_set():
+        waiting.wait(duration(milliseconds=100))
+        now = time.monotonic()
+        for each in reader.take(100):
+            if each.sample_info.valid_data:
+                found[float(each.message.linear.x)] = now
+    received.put(found)
     participant.close()
 
 
 @contextmanager
-def beside(work: Callable[[Event, Event], None]) -> Iterator[None]:
+def beside(work: Callable[..., None], *more: Any) -> Iterator[None]:
     """Have a process that does ``work``."""
     context = multiprocessing.get_context("spawn")
     ready, done = context.Event(), context.Event()
-    process = context.Process(target=work, args=(ready, done))
+    process = context.Process(target=work, args=(ready, done, *more))
     process.start()
     ready.wait(60.0)
     time.sleep(1.0)
@@ -99,7 +164,7 @@ def beside(work: Callable[[Event, Event], None]) -> Iterator[None]:
         yield
     finally:
         done.set()
-        process.join()
+        process.join(10.0)
 
 
 def cost() -> list[float]:
@@ -121,45 +186,47 @@ def cost() -> list[float]:
     return shares
 
 
-def latencies() -> tuple[list[float], list[float], list[float]]:
-    """Return how late instants are, commands are taken in, and commands act, s, sorted."""
-    made, late, taken, acted = link(LINKS[0]), [], [], []
-    pending: list[float] = []
-    last = time.monotonic()
-    with beside(command):
-        pacer = Pacer(1.0, "slip")
-        pacer.start(0)
-        for k in range(round(SECONDS / PERIOD)):
-            pacer.keep(round(k * PERIOD * 1e9))
-            late.append(time.monotonic() - last - PERIOD)
-            last = time.monotonic()
-            acted += [time.monotonic() - each for each in pending]  # at this instant
-            before = made.get("target_speed")
-            made.advance(k * PERIOD, PERIOD)
-            now, speed = time.monotonic(), made.get("target_speed")
-            pending = [speed / SCALE] if speed not in (before, 0.0) else []
-            taken += [now - each for each in pending]
-    made.close()
-    return sorted(late), sorted(taken), sorted(acted)
+def latencies(
+    seconds: int = SECONDS, period: float = PERIOD, domain: int = DOMAIN
+) -> tuple[list[float], list[float]]:
+    """Return how long steps last, and until each command acts in shares of its step, sorted.
+
+    The share is the time from its reception to the step that uses it, over the wall time from the
+    step before to that step: 1 of the period, unless the machine is late.
+    """
+    received: Queue[Any] = multiprocessing.get_context("spawn").Queue()
+    with tempfile.TemporaryDirectory() as name, beside(witness, domain, received):
+        folder, given = Path(name), {"domain": domain, "period": period, "seconds": seconds}
+        for file, text in {"probe.py": PROBE, "rig.toml": RIG, "trial.toml": TRIAL}.items():
+            (folder / file).write_text(text % given)
+        run = [sys.executable, "-m", "seatrial", "run", "trial.toml", "--engine", "direct"]
+        with beside(command, domain, 2.13 * period):
+            subprocess.run([*run, "--out", "out"], cwd=folder, check=True, capture_output=True)
+        result = seatrial.load_result(folder / "out")
+        used, begun = (result.signals[f"probe.{each}"].tolist() for each in ("used", "begun"))
+    came = received.get(timeout=10.0)
+    lengths, shares = [], []
+    for k in range(2, len(used)):
+        length = begun[k] - begun[k - 1]
+        lengths.append(length)
+        if used[k] != used[k - 1] and used[k] in came:
+            shares.append((begun[k] - came[used[k]]) / length)
+    return sorted(lengths), sorted(shares)
 
 
-def table(shares: list[float], late: list[float], taken: list[float], acted: list[float]) -> str:
+def table(shares: list[float], lengths: list[float], acted: list[float]) -> str:
     """Return the figures in Markdown."""
-    lines = [
-        "| | median | range |",
-        "| --- | --- | --- |",
-        f"| share of a core, 20 sensors at 100 Hz | {statistics.median(shares):.1%} "
-        f"| {min(shares):.1%} to {max(shares):.1%} |",
-    ]
-    for what, found in (
-        ("period of 10 ms, longer by", late),
-        ("latency until a command is taken in", taken),
-        ("latency until a command acts", acted),
-    ):
-        highest = found[int(0.99 * len(found))]
-        middle = statistics.median(found)
-        lines.append(f"| {what} | {1e3 * middle:.1f} ms | 99 % within {1e3 * highest:.1f} ms |")
-    return "\n".join([*lines, "", f"One addition in a loop takes {1e9 * addition():.0f} ns there."])
+    length, latency = statistics.median(lengths), statistics.median(acted)
+    longest, latest = (found[int(0.99 * len(found))] for found in (lengths, acted))
+    return f"""| | median | range |
+| --- | --- | --- |
+| share of a core, 20 sensors at 100 Hz | {statistics.median(shares):.1%} \
+| {min(shares):.1%} to {max(shares):.1%} |
+| step of 10 ms lasts | {1e3 * length:.1f} ms | 99 % within {1e3 * longest:.1f} ms |
+| from reception of a command to the step that uses it, in steps | {latency:.2f} \
+| 99 % within {latest:.2f} |
+
+One addition in a loop takes {1e9 * addition():.0f} ns there."""
 
 
 def main() -> None:
