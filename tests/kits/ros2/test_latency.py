@@ -10,6 +10,7 @@ from seatrial import Simulation
 from . import peer
 
 
+@pytest.mark.slow  # 50 ms of transport are for a machine that is not busy
 def test_what_has_come_before_a_step_is_used_by_it(domain, monkeypatch, write):
     monkeypatch.setenv("CYCLONEDDS_URI", peer.LOOPBACK)
     write("probe.py", ros2.PROBE)
