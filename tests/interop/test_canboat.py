@@ -6,6 +6,7 @@ The second is the Python package's, on which the nodes are built; the first is s
 import csv
 import math
 import random
+from dataclasses import replace
 
 import can
 import pytest
@@ -610,3 +611,26 @@ def test_a_pressure_that_is_set_is_on_the_outputs():
     assert node.get("bus_set_pressure_valid")
     assert node.get("bus_set_pressure") == pytest.approx(read["pressure"], abs=1e-6)
     assert read["pressure"] == pytest.approx(fields["pressure"], abs=0.0501)
+
+
+@pytest.mark.parametrize(
+    ("pgn", "fields", "length", "left"),
+    [
+        (127250, ("heading", "deviation", "variation"), 3, 1),
+        (127250, ("heading", "deviation", "variation"), 5, 2),
+        (127250, ("heading", "deviation", "variation"), 6, 2),
+        (127251, ("rate",), 1, 0),
+        (127257, ("yaw", "pitch", "roll"), 5, 2),
+        (128259, ("speedWaterReferenced", "speedGroundReferenced"), 3, 1),
+    ],
+)
+def test_fields_behind_the_end_of_a_short_frame_are_absent(pgn, fields, length, left):
+    message = {"pgn": pgn, "src": 7, "dst": 255, "prio": 2, "fields": dict.fromkeys(fields, 0.5)}
+    ((whole,),) = canboat.encoded([message])
+    short = replace(whole, data=whole.data[:length])
+    (theirs,) = canboat.decoded([(0, short)])
+    ours = Decoder({}).decode(short).fields
+    for frame_fields in (theirs["fields"], ours):
+        assert [frame_fields.get(name) is not None for name in fields] == [
+            k < left for k in range(len(fields))
+        ]

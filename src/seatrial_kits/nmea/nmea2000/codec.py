@@ -8,6 +8,7 @@ from functools import cache, lru_cache
 from typing import Any
 
 from nmea2000 import FieldTypes, NMEA2000Decoder, NMEA2000Field, NMEA2000Message, create_encoder
+from nmea2000.backend import DATABASE
 from nmea2000.input_formats import N2KFormat
 
 from seatrial_kits.can.frame import Frame
@@ -156,7 +157,19 @@ def _single(identifier: int, data: bytes) -> Message | None:
     frame = Frame(identifier, data, extended=True)
     pgn, source, destination, _ = header(frame)
     whole = _decoded(NMEA2000Decoder(), frame)
-    return None if whole is None else _read(whole, pgn, source, destination)
+    if whole is None:
+        return None
+    read = _read(whole, pgn, source, destination)
+    for name in _cut(pgn, whole.id, 8 * len(data)):
+        read.fields[name] = None  # the package reads the bits that are there as if 0 followed
+    return read
+
+
+def _cut(pgn: int, variant: str, bits: int) -> list[str]:
+    """Return the fields that end behind a number of bits, by canboat's table."""
+    layouts = [each for each in DATABASE.pgn_variants(pgn) if each.id == variant]
+    fields = [field for each in layouts for field in each.fields]
+    return [f.id for f in fields if (f.bit_offset or 0) + (f.bit_length or 0) > bits]
 
 
 def _decoded(decoder: Any, frame: Frame) -> Any:
