@@ -45,14 +45,18 @@ $(NODE_TOOLS): tests/interop/node/package-lock.json
 	@if npm ci --prefix $(<D) --no-audit --no-fund --ignore-scripts; then touch $@; \
 		else echo "no canboat: npm is missing, or did not reach its registry"; fi
 
+# A test that hangs fails, with its stack, instead of holding up all others; a hang in C code, which
+# no signal ends, has at least shown where it is.
+HANGS := --timeout 240 --timeout-method signal -o faulthandler_timeout=200
+
 # All modules: minutes. What takes seconds a test, other people's tools, docs and whole voyages: half
 # an hour. What takes longer still.
 test: $(INSTALLED)
-	$(PYTEST) -m "not slow and not interop and not long"
+	$(PYTEST) $(HANGS) -m "not slow and not interop and not long"
 
 # Examples, tables and commands of the pages and the README, the wheel: what CI runs beside `test`.
 test-pages: $(INSTALLED)
-	$(PYTEST) -m "not long" tests/test_docs.py tests/test_readme.py tests/test_wheel.py
+	$(PYTEST) $(HANGS) -m "not long" tests/test_docs.py tests/test_readme.py tests/test_wheel.py
 
 test-slow: $(INSTALLED) $(NODE_TOOLS)
 	$(PYTEST) -m "(slow or interop) and not long"
