@@ -20,12 +20,17 @@ NOTICING = ("tests/api", "tests/cli", "tests/cosim", "tests/kits/test_kits.py", 
 
 
 def needing(kit: str) -> list[str]:
-    """Return a kit with those whose manifests need it."""
-    manifests = {
-        name: tomllib.loads((ROOT / "src/seatrial_kits" / name / "kit.toml").read_text("utf-8"))
+    """Return a kit with those whose manifests need it, or a kit that needs it."""
+    needs = {
+        name: tomllib.loads(
+            (ROOT / "src/seatrial_kits" / name / "kit.toml").read_text("utf-8")
+        ).get("needs", ())
         for name in KITS
     }
-    return [kit, *(name for name, each in manifests.items() if kit in each.get("needs", ()))]
+    gone = [kit]
+    for lost in gone:  # grows on the way
+        gone += [name for name in KITS if lost in needs[name] and name not in gone]
+    return gone
 
 
 def passes(copy: Path, *tests: str) -> None:
