@@ -16,7 +16,6 @@ from typing import TYPE_CHECKING, Any
 from ..errors import InputError, SimulationError
 from ..model.component import NS
 from ..model.faults.operators import Fixed
-from ..system.part import Part
 from ..system.registry import ALGORITHMS
 from ..system.system import System
 from .algorithms import Algorithm
@@ -29,6 +28,7 @@ from .network import Name, Network
 from .node import Node
 from .outside import LastChange
 from .rollback import Checkpoint, Rollback
+from .starting import start
 from .timing import StepTimes
 
 if TYPE_CHECKING:
@@ -123,21 +123,7 @@ class Master:
         InputError if the rig's algorithm cannot step its components.
         """
         nodes = self._network.nodes.values()
-        for node in nodes:
-            given = node.part.given
-            node.part.instance.set_start({name: one.value for name, one in given.items()})
-        early = [node for node in nodes if not node.part.instance.at_once]
-        for node in early:
-            self._start(node)
-        for node in early:
-            _give_again(node.part)
-        self._feedthrough = Feedthrough(self._network)
-        self._start_late([node.part.name for node in nodes if node.part.instance.at_once])
-        self._settle()
-        self._carry_initial()
-        for node in nodes:
-            node.part.instance.begin()
-        self._settle()
+        self._feedthrough = start(self.system, self._network, self.start_ns, self.stop_ns)
         self._settling = list(self._feedthrough.groups)
         chosen = self._algorithm_class or self._chosen()
         self._algorithm = chosen(self._network, self._feedthrough)
@@ -402,25 +388,6 @@ class Master:
         if self._algorithm.follows_at_once and self.steps % node.every == 0:
             self._network.read(node.chunks)
 
-    def _start(self, node: Node) -> None:
-        stop = math.inf if self.stop_ns is None else self.stop_ns / NS
-        node.part.instance.initialise(self.start_ns / NS, stop)
-
-    def _start_late(self, late: Sequence[str]) -> None:
-        """Initialise one by one what takes its inputs in one call, with the others' values.
-
-        One that feeds others comes first; of a loop of such components, the first one written.
-        """
-        nodes, waiting = self._network.nodes, list(late)
-        while waiting:
-            self._settle([name for name in nodes if name not in waiting])
-            free = [name for name in waiting if nodes[name].fed_by.isdisjoint(waiting)]
-            node = nodes[(free or waiting)[0]]
-            self._network.write(node)
-            self._start(node)
-            _give_again(node.part)
-            waiting.remove(node.part.name)
-
     def _chosen(self) -> type[Algorithm]:
         rig = self.system.rig
         where = f"{rig.read_from.path}: algorithm"
@@ -435,34 +402,6 @@ class Master:
             )
         return made
 
-    def _carry_initial(self) -> None:
-        """Carry calculated parameters to what they feed, until one that follows another does."""
-        parts, made = self.system.parts, self.system.initial
-        reads = [parts[one.source[0]].instance.reader([one.source[1]]) for one in made]
-        writes = [parts[one.target[0]].instance.writer([one.target[1]]) for one in made]
-        before: list[Any] = []
-        for _ in range(len(made) + 1):
-            values = [one.value(read()[0]) for one, read in zip(made, reads, strict=True)]
-            if values == before:
-                break
-            for write, value in zip(writes, values, strict=True):
-                write([value])
-            before = values
-            self._settle()
-
-    def _settle(self, names: Sequence[str] | None = None) -> None:
-        """Move values along connections until they agree; among some components alone."""
-        network, feedthrough = self._network, self._feedthrough
-        nodes = [*network.nodes.values()]
-        if names is not None:
-            nodes, feedthrough = [network.nodes[name] for name in names], feedthrough.among(names)
-        for node in nodes:
-            network.read(node.chunks)
-        feedthrough.propagate(self.steps)
-        for node in nodes:
-            network.write(node)
-            network.read(node.chunks)
-
     def _changed(self) -> None:
         """Let feed-through outputs follow a change from outside, which is no continuous one."""
         self._rollback.forget()
@@ -473,19 +412,3 @@ class Master:
 
 def _override(component: str, name: str) -> str:
     return f"override of {component}.{name}"
-
-
-def _give_again(part: Part) -> None:
-    """Set parameters of another tool's FMU again that it has lost on its way to initialisation.
-
-    Some return to their own start values there; FMI lets parameters be set until its end.
-    """
-    variables = part.instance.variables
-    parameters = [name for name in part.given if variables[name].causality == "parameter"]
-    if part.code or not parameters:
-        return
-    wanted = [part.given[name].value for name in parameters]
-    found = part.instance.reader(parameters)()
-    lost = [i for i, value in enumerate(found) if value != wanted[i]]
-    if lost:
-        part.instance.writer([parameters[i] for i in lost])([wanted[i] for i in lost])

@@ -15,11 +15,9 @@ import ast
 import hashlib
 import importlib.metadata
 import importlib.util
-import io
 import re
 import sys
-import tokenize
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cache, cached_property, lru_cache
 from pathlib import Path
@@ -28,8 +26,8 @@ from ...errors import InputError
 from ...kits import OURS
 from ...moved import moved_to
 from ..components.source import ComponentSource
+from .imports import imports, parsed, renamed
 
-_COOKIE = re.compile(r"^[ \t\f]*#.*?coding[:=]")
 _NO_INIT = b'"""Part of pythonfmu (MIT licence, beside this file)."""\n'
 
 
@@ -90,10 +88,10 @@ def bundle(stem: str, source: bytes, folder: Path | None, package: str | None = 
         for name, (path, text) in modules.items():
             end = "/__init__.py" if path.name == "__init__.py" else ".py"
             place = name.replace(".", "/") + end
-            files[f"{root}/{place}"] = _renamed(text, str(path), own, root)
+            files[f"{root}/{place}"] = renamed(text, str(path), own, root)
         if "pythonfmu" in own:
             files[f"{root}/pythonfmu/LICENSE"] = _pythonfmu_licence()
-        files[f"{stem}_{tag}.py"] = _renamed(source, f"{stem}.py", own, root)
+        files[f"{stem}_{tag}.py"] = renamed(source, f"{stem}.py", own, root)
         files["slavemodule.txt"] = f"{stem}_{tag}".encode()
         files["requirements.txt"] = "".join(f"{r}\n" for r in requirements).encode()
         return files
@@ -154,7 +152,7 @@ def _closure(
     """Return the travelling modules by name, and the third-party packages they import."""
     modules: dict[str, tuple[Path, bytes]] = {}
     third_party: set[str] = set()
-    todo = [(found, file) for found in _imports(source, file, "", False, everywhere=True)]
+    todo = [(found, file) for found in imports(source, file, "", False, everywhere=True)]
     while todo:
         (name, optional), importer = todo.pop()
         path = local.find(name)
@@ -177,7 +175,7 @@ def _closure(
         modules[name] = (path, text)
         package = path.name == "__init__.py"
         own = name.partition(".")[0] not in local.ours
-        found = _imports(text, str(path), name, package, everywhere=own)
+        found = imports(text, str(path), name, package, everywhere=own)
         todo += [(one, str(path)) for one in found]
         if "." in name:
             todo.append(((name.rpartition(".")[0], False), str(path)))
@@ -207,7 +205,7 @@ def _data_files(path: Path, source: bytes) -> list[tuple[str, bytes]]:
 @lru_cache(maxsize=1024)
 def _data_names(source: bytes, file: str) -> tuple[str, ...]:
     """Return what a module assigns to ``DATA_FILES`` at its top level."""
-    for node in _parsed(_text(source, file), file).body:
+    for node in parsed(source, file).body:
         if not isinstance(node, (ast.Assign, ast.AnnAssign)):
             continue
         targets = node.targets if isinstance(node, ast.Assign) else [node.target]
@@ -238,135 +236,6 @@ def _require_installed(top: str, importer: str, local: _Local) -> None:
             f"{importer}: imports {top!r}, which is not installed"
             + (f" and no module beside it in {local.folder}" if local.folder else "")
         )
-
-
-@lru_cache(maxsize=1024)
-def _imports(
-    source: bytes, file: str, module: str, is_package: bool, *, everywhere: bool
-) -> tuple[tuple[str, bool], ...]:
-    """Return (module, may be missing) for every import, and for the names in ``from`` imports.
-
-    At module level only, unless ``everywhere``.
-    """
-    return tuple(_found_imports(source, file, module, is_package, everywhere))
-
-
-def _found_imports(
-    source: bytes, file: str, module: str, is_package: bool, everywhere: bool
-) -> Iterator[tuple[str, bool]]:
-    for node, optional in _statements(_parsed(_text(source, file), file), everywhere, False):
-        if isinstance(node, ast.Import):
-            yield from ((alias.name, optional) for alias in node.names)
-        elif isinstance(node, ast.ImportFrom):
-            base = node.module or ""
-            if node.level:
-                parts = module.split(".") if is_package else module.split(".")[:-1]
-                parts = parts[: len(parts) - node.level + 1]
-                base = ".".join([*parts, base] if base else parts)
-            yield base, optional
-            # A name may be a submodule; the closure drops those that are not.
-            yield from ((f"{base}.{alias.name}", optional) for alias in node.names)
-
-
-def _statements(tree: ast.AST, everywhere: bool, optional: bool) -> Iterator[tuple[ast.AST, bool]]:
-    """Yield every node, and if it stands where a missing module is caught."""
-    for node in ast.iter_child_nodes(tree):
-        function = isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef, ast.Lambda))
-        if function and not everywhere:
-            continue
-        yield node, optional
-        if isinstance(node, ast.If) and _is_type_checking(node.test):
-            for branch in node.orelse:
-                yield branch, optional
-                yield from _statements(branch, everywhere, optional)
-        elif isinstance(node, ast.Try) and any(_catches_import(h) for h in node.handlers):
-            for part in node.body:
-                yield part, True
-                yield from _statements(part, everywhere, True)
-            for other in (*node.handlers, *node.orelse, *node.finalbody):
-                yield from _statements(other, everywhere, optional)
-        else:
-            yield from _statements(node, everywhere, optional)
-
-
-def _is_type_checking(test: ast.expr) -> bool:
-    return ast.unparse(test) in ("TYPE_CHECKING", "typing.TYPE_CHECKING")
-
-
-def _catches_import(handler: ast.ExceptHandler) -> bool:
-    caught = ast.unparse(handler.type) if handler.type else "Exception"
-    return any(name in caught for name in ("ImportError", "ModuleNotFoundError", "Exception"))
-
-
-def _text(source: bytes, file: str) -> str:
-    """Return Python source as text with plain line ends, without mark and encoding comment."""
-    try:
-        encoding, _ = tokenize.detect_encoding(io.BytesIO(source).readline)
-        text = source.decode(encoding)
-    except (SyntaxError, UnicodeDecodeError) as error:
-        raise InputError(f"{file}: not Python: {error}") from None
-    text = text.removeprefix("\ufeff").replace("\r\n", "\n").replace("\r", "\n")
-    first, newline, rest = text.partition("\n")
-    second, newline2, rest2 = rest.partition("\n")
-    if _COOKIE.match(first):
-        return "#" + newline + rest
-    if _COOKIE.match(second):
-        return first + newline + "#" + newline2 + rest2
-    return text
-
-
-def _parsed(source: str, file: str) -> ast.Module:
-    try:
-        return ast.parse(source)
-    except (SyntaxError, ValueError) as error:
-        line = getattr(error, "lineno", None)
-        raise InputError(f"{file}{f', line {line}' if line else ''}: not Python: {error}") from None
-
-
-@lru_cache(maxsize=1024)  # most modules travel in many FMUs
-def _import_statements(text: str, file: str) -> tuple[ast.Import | ast.ImportFrom, ...]:
-    """Return all import statements of a module, the last one first."""
-    nodes = ast.walk(_parsed(text, file))
-    found = (node for node in nodes if isinstance(node, (ast.Import, ast.ImportFrom)))
-    return tuple(sorted(found, key=lambda n: (n.lineno, n.col_offset), reverse=True))
-
-
-def _renamed(source: bytes, file: str, own: frozenset[str], root: str) -> bytes:
-    """Return ``source`` with absolute imports of ``own`` packages made imports from ``root``."""
-    text = _text(source, file)
-    lines = [f"{line}\n" for line in text.split("\n")]
-    for node in _import_statements(text, file):
-        new = _renamed_statement(node, own, root)
-        if new is None:
-            continue
-        first, last = node.lineno - 1, (node.end_lineno or node.lineno) - 1
-        # Columns count bytes; what stands before and after on these lines stays.
-        before = lines[first].encode()[: node.col_offset].decode()
-        after = lines[last].encode()[node.end_col_offset :].decode()
-        filler = ["\n"] * (last - first)  # keep the line numbers of tracebacks
-        lines[first : last + 1] = [before + new + after, *filler]
-    return "".join(lines)[:-1].encode()
-
-
-def _renamed_statement(
-    node: ast.Import | ast.ImportFrom, own: frozenset[str], root: str
-) -> str | None:
-    if isinstance(node, ast.ImportFrom):
-        if node.level or (node.module or "").partition(".")[0] not in own:
-            return None
-        return ast.unparse(ast.ImportFrom(f"{root}.{node.module}", node.names, 0))
-    if not any(alias.name.partition(".")[0] in own for alias in node.names):
-        return None
-    parts = []
-    for alias in node.names:
-        top = alias.name.partition(".")[0]
-        if top not in own:
-            parts.append(ast.unparse(ast.Import([alias])))
-        elif alias.asname:
-            parts.append(f"import {root}.{alias.name} as {alias.asname}")
-        else:  # 'import a.b' binds 'a'
-            parts += [f"import {root}.{alias.name}", f"from {root} import {top}"]
-    return "; ".join(parts)
 
 
 @cache
