@@ -74,9 +74,9 @@ def test_it_has_landed_four_seconds_after_it_touched():
 
 def test_a_drone_that_takes_off_has_not_touched():
     landing = moved(started(TouchDown), 3.0, **STANDS)
-    moved(landing, 4.0, position=[0.0, 0.0, -0.54])  # 0.09 m over the deck
+    moved(landing, 4.0, position=[0.0, 0.0, -0.549])  # 0.099 m over the deck
     assert not moved(landing, 6.0, **STANDS).get("touched")
-    moved(landing, 7.0, position=[0.0, 0.0, -0.56], legs_down=0.0)
+    moved(landing, 7.0, position=[0.0, 0.0, -0.551], legs_down=0.0)
     assert not landing.get("touched")
     moved(landing, 7.5, **STANDS)
     assert (landing.get("touched"), landing.get("touch_time")) == (True, 7.0)
