@@ -347,7 +347,7 @@ def test_under_guidance_its_profile_needs_actuators_and_sensors_only(made):
     assert "unknown section 'links.ground'" in done.stderr
 
 
-@needs_kits("mavlink")
+@needs_kits("mavlink", "nmea")
 def test_what_a_link_takes_by_default_is_a_note(made):
     path = made / PROFILE
     text = path.read_text("utf-8")

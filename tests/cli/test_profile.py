@@ -91,7 +91,7 @@ def test_describe_shows_every_parameter_of_every_table(name: str, tmp_path: Path
             assert [line.split()[0] for line in shown[first:]] == list(keys(group, kind))
 
 
-@needs_kits("mavlink")
+@needs_kits(*OF_PROFILES)
 def test_describe_shows_what_a_ground_station_tunes(tmp_path: Path) -> None:
     done = seatrial("profile", "describe", "mariner", cwd=tmp_path)
     shown = [line.split() for line in rows(done.stdout, "tunables of links.ground")]
@@ -102,7 +102,7 @@ def test_describe_shows_what_a_ground_station_tunes(tmp_path: Path) -> None:
     assert ["tunables", "11,", "below", "profile"] in [words[:4] for words in link]
 
 
-@needs_kits("ardupilot")
+@needs_kits(*OF_PROFILES)
 def test_describe_shows_which_sensor_reaches_a_firmware(tmp_path: Path) -> None:
     done = seatrial("profile", "describe", "bluerov2", cwd=tmp_path)
     rows = [line.split() for line in done.stdout.splitlines()]
