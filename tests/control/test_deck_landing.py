@@ -103,6 +103,24 @@ def test_an_oscillation_is_predicted():
     assert np.corrcoef(found[:, 0], expected[:, 0])[0, 1] > 0.9
 
 
+def test_the_harmonic_prediction_is_that_of_its_spectrum():
+    # The most likely continuation of a Gaussian signal whose variance the docstring states.
+    y = np.random.default_rng(3).normal(size=(40, 3)).cumsum(axis=0) * [0.1, 0.02, 0.01]
+    found = prediction.harmonic(y, 6)
+    w = 0.4 + 0.05 * np.arange(73)
+    sigma = np.where(w > 1.0, 0.09, 0.07)
+    jonswap = w**-5.0 * np.exp(-1.25 / w**4) * 3.3 ** np.exp(-0.5 * ((w - 1.0) / sigma) ** 2)
+    t = 2 * math.pi / 14 * np.arange(46)
+    for axis, (power, noise) in enumerate(((0, 0.01), (4, 0.003), (4, 0.003))):
+        shares = jonswap * w**power / (jonswap * w**power).sum()
+        whole = sum(s * np.cos(a * (t[:, None] - t)) for s, a in zip(shares, w, strict=True))
+        mean, spread = y[:, axis].mean(), y[:, axis].std()
+        known = whole[:40, :40] + np.eye(40) * ((noise / spread) ** 2 + (3e-3 if axis else 1e-2))
+        expected = mean + whole[40:, :40] @ np.linalg.solve(known, y[:, axis] - mean)
+        # 1e-9 is added to the spread.
+        np.testing.assert_allclose(found[:, axis], expected, rtol=1e-5, atol=1e-6)
+
+
 def errors_of(predict, deck, height):
     """Return the errors of heave over its deviation, and of the slopes', by samples ahead."""
     size, pad = SIZES[deck]

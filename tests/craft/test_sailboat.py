@@ -8,7 +8,9 @@ import csv
 import math
 import tomllib
 from pathlib import Path
+from types import SimpleNamespace
 
+import casadi as ca
 import numpy as np
 import pytest
 
@@ -17,6 +19,8 @@ from seatrial.model.units import conversion
 from seatrial.physics.craft.kinematics import to_ned
 from seatrial.physics.craft.sailboat import Sailboat
 from seatrial.system.parameters import load_vehicle
+
+from .numerically import numbers
 
 GLORIA = tomllib.loads(load_vehicle("gloria").read_from.path.read_text("utf-8"))
 REFERENCE = Path(__file__).parents[1] / "reference"
@@ -45,6 +49,26 @@ def placed(boat, state):
 
 def state_of(boat):
     return np.array([*boat.get("eta"), *boat.get("nu")])
+
+
+def test_water_that_accelerates_takes_the_boat_along():
+    # Pressure gives a boat the acceleration of the water around it, whatever its mass.
+    values = {name: entry["value"] for name, entry in GLORIA["sailboat"].items()}
+    both = numbers(Sailboat, **values)
+    state = SimpleNamespace(eta=ca.SX.sym("eta", 4), nu=ca.SX.sym("nu", 4))
+    at = [[0, 0, 0.2, 0.9], [1.0, 0.3, 0.1, -0.2]]
+    found = []
+    for speeding in ([0.0, 0.0, 0.0], [0.4, -0.7, 0.2]):
+        sea = {"water_velocity": [0.2, 0.1, 0.0], "water_acceleration": speeding}
+        sea |= {"wave_load": [0.0] * 6, "wind_load": [0.0] * 6}
+        inputs = SimpleNamespace(**vars(both), **{n: ca.DM(v) for n, v in sea.items()})
+        rates, _ = Sailboat("boat").equations(state, inputs, both)
+        function = ca.Function("rates", [state.eta, state.nu], [rates["nu"]])
+        found.append(np.array(function(*at)).ravel())
+    c, s = math.cos(0.9), math.sin(0.9)
+    # Heeled by 0.2 rad, her y axis meets the cosine of it.
+    ahead, starboard = c * 0.4 - s * 0.7, (-s * 0.4 - c * 0.7) * math.cos(0.2)
+    np.testing.assert_allclose(found[1] - found[0], [ahead, starboard, 0, 0], atol=1e-9)
 
 
 # ---------------------------------------------------------------------- parameters

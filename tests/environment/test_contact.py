@@ -168,3 +168,9 @@ def test_corners_press_and_rub_where_they_touch(seed):
     assert np.abs(force).max() > 1.0
     np.testing.assert_allclose(contact.get("force"), R.inv().apply(force), rtol=1e-9, atol=1e-9)
     np.testing.assert_allclose(contact.get("moment"), R.inv().apply(moment), rtol=1e-9, atol=1e-9)
+
+
+def test_far_from_everything_nothing_is_touched():
+    contact = started(Contact, seabed_depth=500.0)
+    contact.advance(0.0, 0.1)
+    assert (contact.get("touches"), contact.get("impact_speed")) == (0, 0.0)

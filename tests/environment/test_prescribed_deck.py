@@ -117,6 +117,21 @@ def test_files_that_are_no_object(tmp_path, text):
         started(PrescribedDeck("deck"), file=str(file))
 
 
+def test_a_seed_gives_the_wind_its_direction():
+    for seed in (1, 2, 3):
+        drawn = started(LowAltitudeWind("wind"), mean_speed=5.0, direction_by="seed", seed=seed)
+        to = 2 * math.pi * float(drawn.generator(0, 1).random())
+        given = started(LowAltitudeWind("wind"), mean_speed=5.0, direction=to, seed=seed)
+        assert drawn.get("velocity") == pytest.approx(given.get("velocity"), rel=1e-12)
+
+
+def test_without_a_vertical_share_the_wind_is_level():
+    wind = started(LowAltitudeWind("wind"), mean_speed=5.0, vertical_share=0.0)
+    for _ in range(5):
+        assert wind.get("velocity")[2] == 0.0
+        wind.advance(wind.now, 0.1)
+
+
 @pytest.mark.slow
 def test_gusts_have_the_intensity_of_the_specification():
     wind = started(LowAltitudeWind("wind"), mean_speed=10.0, direction=math.pi / 2)

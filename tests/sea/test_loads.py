@@ -148,3 +148,12 @@ def test_a_table_is_met_at_its_points_and_goes_round():
 def test_uneven_strips_are_refused():
     with pytest.raises(InputError, match="evenly"):
         strips_of("barge_T020", x=np.geomspace(0.1, 1.0, 20))
+
+
+def test_a_table_of_one_frequency_holds_at_all():
+    forces = np.arange(12.0).reshape(6, 1, 2) + 1j
+    response = tabulated([1.0], [0.0, math.pi], forces)
+    w = np.array([0.4, 1.0, 1.7])
+    found = response(w, w**2 / 9.81, np.full(3, 0.25 * math.pi))
+    expected = 0.75 * forces[:, 0, 0] + 0.25 * forces[:, 0, 1]
+    np.testing.assert_allclose(found, np.repeat(expected[:, None], 3, 1), rtol=1e-12)

@@ -166,9 +166,31 @@ def test_slow_variation_is_stationary_and_keyed():
     assert lag == pytest.approx(math.exp(-1.0), abs=0.06)
     assert GaussMarkov(0.1, 20.0, 3, "current speed").at(500.25) == x.at(500.25)
     assert GaussMarkov(0.1, 20.0, 3, "current direction").at(3.0) != x.at(3.0)
+    # Linear between its samples, one a second.
+    for t, share in ((2.5, 0.5), (7.25, 0.25), (40.9, 0.9)):
+        k = math.floor(t)
+        assert x.at(t) == pytest.approx((1 - share) * values[k] + share * values[k + 1], rel=1e-9)
     assert reflected(1.2, 0.0, 1.0) == pytest.approx(0.8)
     assert reflected(-0.3, 0.0, 1.0) == pytest.approx(0.3)
     assert reflected(0.4, 0.0, 1.0) == pytest.approx(0.4)
+
+
+@pytest.mark.parametrize("t", [-2.0, 5.3, 61.7])
+def test_a_slow_variation_turns_and_stretches_the_whole_profile(t):
+    slow = {"variation": 0.5, "turning": 0.4, "variation_time": 30.0, "seed": 5}
+    faster = GaussMarkov(0.5, 30.0, 5, "current speed").at(max(t, 0.0))
+    turned = GaussMarkov(0.4, 30.0, 5, "current direction").at(max(t, 0.0))
+    even = CurrentState(speed=0.3, direction=0.7, **slow)
+    expected = abs(0.3 + faster) * np.exp(1j * (0.7 + turned))
+    assert complex(*even.velocity(t, 4.0)) == pytest.approx(expected, rel=1e-12)
+    layers = {"layers": 2, "layer_depths": (0.0, 10.0), "layer_speeds": (0.8, 0.2)}
+    layers["layer_directions"] = (0.1, 2.0)
+    layered = CurrentState(speed=0.3, direction=0.7, profile="layers", **layers, **slow)
+    # Halfway between the layers; longer by what the speed has grown.
+    still = (0.8 * np.exp(0.1j) + 0.2 * np.exp(2j)) / 2
+    grown = (abs(still) + abs(0.3 + faster) - 0.3) / abs(still)
+    expected = still * grown * np.exp(1j * turned)
+    assert complex(*layered.velocity(t, 5.0)) == pytest.approx(expected, rel=1e-12)
 
 
 def test_current_in_the_axes_of_a_turning_craft():

@@ -186,7 +186,10 @@ WAVES, WIND = "wave-loads", "wind-loads"
 def wave_loads(c: Context) -> Any:
     """Return the load of the waves on a surface craft by strips (`seaway`); 0 in calm water.
 
-    Limits: zero speed, mean wetted surface; see `sea.strips`.
+    Limits: zero speed, mean wetted surface; see `sea.strips`. The load acts in body axes, as the
+    hull's own added mass and damping do, while a conservative ``restoring`` is vertical: products
+    of pitch and heave then give a mean force that is no drift of second order. An Otter at rest in
+    regular waves of 0.2 m and 2.5 s moves astern by 0.13 to 0.34 m/s, whatever their direction.
     """
     return getattr(c.inputs, "wave_load", ca.DM(6, 1))
 
