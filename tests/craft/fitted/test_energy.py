@@ -61,29 +61,21 @@ def test_propellers_of_shipped_vehicles_at_rest_stay_below_the_ideal_disk(vehicl
 
 
 def test_the_propeller_of_four_quadrants_takes_energy_in_all_of_them():
-    """2 pi n Q - V_a T > 0, for all signs of shaft speed and advance.
-
-    Less than 0.5 % of rho/2 A V^3 is the scatter of the series' fit where both are near 0.
-    """
+    """2 pi n Q - V_a T > 0, for all signs of shaft speed and advance; at rest the ideal disk's T."""
     beta = np.linspace(-math.pi, math.pi, 721)
     n, advance = np.cos(beta) / (0.7 * math.pi), np.sin(beta)  # D = 1 m, V = 1 m/s
     found = all_quadrants(1.0, DENSITY, ca.DM(n), ca.DM(advance), wageningen_b4_70())
     thrust, moment = (np.array(each).ravel() for each in found)
-    taken = (math.tau * n * moment - advance * thrust) / (DENSITY / 2 * math.pi / 4)
-    assert taken.min() > -0.005
+    assert (math.tau * n * moment - advance * thrust > 0).all()
     at_rest = np.argmin(np.abs(beta))
     power = math.tau * n[at_rest] * moment[at_rest]
     assert 0 < thrust[at_rest] < disk_limit(power, 1.0)
 
 
-@settings(max_examples=12, deadline=None)
-@given(
-    kind=st.sampled_from(["propeller", "wageningen-b", "four-quadrant"]),
-    order=st.floats(-1, 1),
-    speed=SPEEDS,
-    hand=st.sampled_from([1.0, -1.0]),
-)
-def test_the_shaft_does_the_work_of_its_reaction(kind, order, speed, hand):
+@pytest.mark.parametrize("kind", ["propeller", "wageningen-b", "four-quadrant"])
+@pytest.mark.parametrize(("order", "hand"), [(0.8, 1), (0.8, -1), (-0.6, 1)])
+@pytest.mark.parametrize("speed", [-1.5, 2.0])
+def test_the_shaft_does_the_work_of_its_reaction(kind, order, hand, speed):
     """P = -K Omega: the hull takes K = -hand Q about the axis, the shaft turns at hand Omega."""
     part = craft(
         propulsors=kind,
@@ -100,16 +92,16 @@ def test_the_shaft_does_the_work_of_its_reaction(kind, order, speed, hand):
     reaction = load(part, nu, **orders)[3]
     shows = shown(part, nu, **orders)
     assert shows("propulsor_power") == pytest.approx(
-        -hand * reaction * shows("propulsor_rate"), rel=1e-9, abs=1e-9
+        -hand * reaction * shows("propulsor_rate"), rel=1e-9
     )
 
 
 @settings(max_examples=20, deadline=None)
 @given(delta=st.floats(-1.5, 1.5), u=SPEEDS, v=SPEEDS)
 def test_a_fins_lift_does_no_work_and_its_drag_takes_all(delta, u, v):
-    """F . v = -rho/2 A C_D V^3, C_D >= C_D0, and F^2 - (F . v / V)^2 is the square of the lift.
+    """F . v = -rho/2 A C_D V^3 with C_D >= C_D0: the lift C_L is the force across v.
 
-    Up to the stall, C_D = C_D0 + C_L^2 / (0.9 pi AR) joins the two.
+    Up to the stall, C_D = C_D0 + C_L^2 / (0.9 pi AR).
     """
     area, aspect, profile = 0.02, 1.5, 0.01
     part = craft(
@@ -126,11 +118,11 @@ def test_a_fins_lift_does_no_work_and_its_drag_takes_all(delta, u, v):
     scale = DENSITY / 2 * area * V**2
     C_D = -(force @ [u, v]) / V / scale
     C_L = (force[0] * v - force[1] * u) / V / scale
-    assert profile - C_D < 1e-6
+    assert profile - C_D < 1e-9
     attack = math.asin(math.sin(math.atan2(v, u) + delta))  # e is to port
     if abs(attack) < 0.39:
         induced = C_L**2 / (0.9 * math.pi * aspect)
-        assert C_D - profile == pytest.approx(induced, rel=1e-5, abs=1e-6)
+        assert C_D - profile == pytest.approx(induced, rel=1e-9, abs=1e-9)
 
 
 @settings(max_examples=20, deadline=None)
@@ -145,7 +137,7 @@ def test_a_rudder_takes_the_work_of_its_normal_force(delta, u, v):
     alpha = delta + math.atan2(v, u)  # gamma_R = 1; the drift is positive to port
     slope = 6.13 * 1.5 / (1.5 + 2.25)
     taken = DENSITY / 2 * 0.02 * slope * V**3 * math.sin(alpha) ** 2
-    assert force @ [u, v] == pytest.approx(-taken, rel=1e-5, abs=1e-6 * V**3)
+    assert force @ [u, v] == pytest.approx(-taken, rel=1e-9, abs=1e-9)
     assert force @ [math.cos(delta), -math.sin(delta)] == pytest.approx(0, abs=1e-9)
 
 
