@@ -21,6 +21,7 @@ from .bag import Bag
 from .commands import Commands
 from .diagnostics import diagnostics
 from .faults import NONE, Faults
+from .graph import Graph
 from .instruments import Instruments
 from .lockstep import Lockstep, awaited
 from .mismatches import Mismatches
@@ -62,7 +63,7 @@ class Ros2(Ros2Ports):
 
     **Hosts**: on the loopback interface alone, unless a run is allowed the network.
 
-    Not here: images and point clouds, parameters of nodes, the names of nodes in the graph.
+    Not here: images and point clouds, parameters of nodes.
     It cannot be rolled back: what was written has been read.
 
     Raises InputError at the start for a domain that cannot be joined, a middleware that is no
@@ -85,6 +86,7 @@ class Ros2(Ros2Ports):
         "_fault_service",
         "_names",
         "_mismatches",
+        "_graph",
         "_bag",
     }
 
@@ -111,6 +113,7 @@ class Ros2(Ros2Ports):
         self._instruments = Instruments(read_instruments(self.instruments))
         self._outlet = Outlet(self._participant, self._names)
         self._mismatches = Mismatches(self._participant, self._say)
+        self._graph = Graph(self._participant, self.simulator or self._names.full("seatrial"))
         self._lockstep: Lockstep | None = None
         self._simulator: Simulator | None = None
         if self.simulator:
@@ -160,6 +163,7 @@ class Ros2(Ros2Ports):
         if self._commands is None:
             self._outlet.open(self, here)
         commands = self._begun()
+        self._graph.tell()
         if self._lockstep is not None:
             self._lockstep.meet(self._outlet.matches)
         self._outlet.write(self, here)

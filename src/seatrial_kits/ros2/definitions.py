@@ -1,7 +1,8 @@
 """Definitions of messages and services: the store of rosbags, and `interfaces`.
 
 A service ``package/srv/Name`` has two messages, ``package/msg/Name_Request`` and ``..._Response``
-in the store, each with the header that rmw_cyclonedds puts before the fields.
+in the store, each with the header that rmw_cyclonedds puts before the fields. An action
+``package/action/Name`` has the services ``package/action/Name_SendGoal`` and ``..._GetResult``.
 """
 
 from __future__ import annotations
@@ -38,11 +39,31 @@ def type_store() -> Any:
         if group == "msg":
             found |= get_types_from_msg(text, name)
             continue
-        for part, fields in zip(_PARTS, text.split("---\n"), strict=True):
-            whole = _HEADER + (fields or _NO_FIELDS)
-            found |= get_types_from_msg(whole, f"{package}/msg/{short}{part}")
+        definitions = _of_action(package, short, text) if group == "action" else {short: text}
+        for part, fields in definitions.items():
+            if "---\n" not in fields:
+                found |= get_types_from_msg(fields, f"{package}/msg/{part}")
+                continue
+            for end, half in zip(_PARTS, fields.split("---\n"), strict=True):
+                whole = _HEADER + (half or _NO_FIELDS)
+                found |= get_types_from_msg(whole, f"{package}/msg/{part}{end}")
     store.register(found)
     return store
+
+
+def _of_action(package: str, name: str, text: str) -> dict[str, str]:
+    """Return the messages and services of an action, of its three parts."""
+    named = f"{package}/msg/{name}"
+    own = dict(zip(("_Goal", "_Result", "_Feedback"), text.split("---\n"), strict=True))
+    identity = "unique_identifier_msgs/UUID goal_id\n"
+    made = {
+        **own,
+        "_FeedbackMessage": f"{identity}{named}_Feedback feedback\n",
+        "_SendGoal": f"{identity}{named}_Goal goal\n---\nbool accepted\n"
+        "builtin_interfaces/Time stamp\n",
+        "_GetResult": f"{identity}---\nint8 status\n{named}_Result result\n",
+    }
+    return {f"{name}{part}": fields for part, fields in made.items()}
 
 
 def service_parts(kind: str) -> tuple[str, str]:
@@ -54,5 +75,6 @@ def service_parts(kind: str) -> tuple[str, str]:
 def dds_name(kind: str) -> str:
     """Return the name of a type in DDS, ``package::msg::dds_::Name_``."""
     package, _, name = kind.split("/")
-    group = "srv" if name.endswith(_PARTS) else "msg"
+    action = f"{package}/action/{name.partition('_')[0]}" in INTERFACES
+    group = "action" if action else "srv" if name.endswith(_PARTS) else "msg"
     return f"{package}::{group}::dds_::{name}_"

@@ -27,6 +27,8 @@ SENSORS: Mapping[str, tuple[str, ...]] = {
     "water_speed": ("speed-log",),
     "water_depth": ("echo-sounder", "dvl"),
     "wind": ("anemometer",),
+    "wind_vector": ("anemometer",),
+    "sonar": ("scanning-sonar",),
     "leak": ("leak-detector",),
     "temperature": ("ctd",),
 }

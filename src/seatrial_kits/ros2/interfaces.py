@@ -1,8 +1,10 @@
-"""Definitions that the stores of rosbags lack, by name: fields alone, of a service two parts.
+"""Definitions that the stores of rosbags lack, by name: fields alone, of a service two parts, of an
+action three.
 
 simulation_interfaces 1.x (Apache-2.0, https://github.com/ros-simulation/simulation_interfaces),
 marine_acoustic_msgs (BSD-3-Clause, https://github.com/apl-ocean-engineering/marine_msgs),
-ros_gz_interfaces (Apache-2.0, https://github.com/gazebosim/ros_gz) and rcl_interfaces (Apache-2.0).
+ros_gz_interfaces (Apache-2.0, https://github.com/gazebosim/ros_gz), rcl_interfaces and
+action_msgs (Apache-2.0).
 A module, and no files: FMUs take modules along.
 """
 
@@ -15,6 +17,12 @@ INTERFACES: Mapping[str, str] = {
 Parameter[] parameters
 ---
 SetParametersResult[] results
+""",
+    "action_msgs/srv/CancelGoal": """\
+GoalInfo goal_info
+---
+int8 return_code
+GoalInfo[] goals_canceling
 """,
     "marine_acoustic_msgs/msg/Dvl": """\
 std_msgs/Header header
@@ -42,6 +50,14 @@ float32[] data
     "ros_gz_interfaces/msg/ParamVec": """\
 std_msgs/Header header
 rcl_interfaces/Parameter[] params
+""",
+    "simulation_interfaces/action/SimulateSteps": """\
+uint64 steps
+---
+Result result
+---
+uint64 completed_steps
+uint64 remaining_steps
 """,
     "simulation_interfaces/msg/Bounds": """\
 uint8 type

@@ -26,6 +26,8 @@ LOOPBACK = (
 )
 """What nodes must have in CYCLONEDDS_URI too, to be found without multicast."""
 _URI = "CYCLONEDDS_URI"
+_ENCLAVE = b"enclave=/;"
+"""By which middlewares of ROS know a participant of theirs."""
 _spoken_in: set[int] = set()
 """Processes in which a participant was made: this one, and one that it was forked from."""
 
@@ -44,7 +46,7 @@ class Participant:
 
     def __init__(self, domain: int) -> None:
         try:
-            from cyclonedds.core import DDSException
+            from cyclonedds.core import DDSException, Policy, Qos
             from cyclonedds.domain import DomainParticipant
         except ImportError:
             raise InputError(f"ROS 2 needs cyclonedds, which is not installed: {INSTALL}") from None
@@ -53,10 +55,14 @@ class Participant:
         self.domain = domain if domain >= 0 else _environment_domain()
         try:
             with _configured(), confined_sockets(reaches_others()):
-                self.dds = DomainParticipant(self.domain)
+                self.dds = DomainParticipant(self.domain, Qos(Policy.Userdata(_ENCLAVE)))
             self.of_this_process.add(str(self.dds.guid))
         except DDSException as error:
             raise InputError(f"the ROS domain {self.domain} cannot be joined: {error}") from None
+        self.identity: bytes = self.dds.guid.bytes
+        self.readers: list[bytes] = []
+        self.writers: list[bytes] = []
+        """Identifiers of all that it has, 16 bytes each."""
 
     def writer(self, topic: str, kind: str, durability: Durability = "volatile") -> Writer:
         """Return a writer of messages; see `Writer`."""
@@ -66,7 +72,9 @@ class Participant:
         """Return a reliable reader that keeps the newest ``depth`` messages."""
         from cyclonedds.sub import DataReader
 
-        return DataReader(self.dds, self.topic(topic, kind, prefix), _quality("volatile", depth))
+        made = DataReader(self.dds, self.topic(topic, kind, prefix), _quality("volatile", depth))
+        self.readers.append(made.guid.bytes)
+        return made
 
     def topic(self, topic: str, kind: str, prefix: str = "rt") -> Any:
         """Return the topic of DDS."""
@@ -104,6 +112,7 @@ class Writer:
         self.dds = DataWriter(
             participant.dds, participant.topic(topic, kind, prefix), _quality(durability, depth)
         )
+        participant.writers.append(self.dds.guid.bytes)
 
     def write(self, data: bytes) -> None:
         """Write a message of the kind, as bytes (`packing`)."""

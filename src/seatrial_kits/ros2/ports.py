@@ -153,6 +153,11 @@ class Ros2Ports(Logging, Reachable, TrueMotion, Sampled):
     water_speed_valid = Input("1", "whether it is valid", type=bool, optional=True)
     water_depth = Input("m", "water below a transducer", start=NOT_CONNECTED, optional=True)
     water_depth_valid = Input("1", "whether there is an echo", type=bool, optional=True)
+    sonar_distance = Input(
+        "m", "range of a scanning sonar's first echo", start=NOT_CONNECTED, optional=True
+    )
+    sonar_distance_valid = Input("1", "whether there is an echo", type=bool, optional=True)
+    sonar_angle = Input("rad", "where it looks, from the bow to starboard", optional=True)
     wind_speed = Input("m/s", "speed of the apparent wind", start=NOT_CONNECTED, optional=True)
     wind_angle = Input(
         "rad", "where the apparent wind blows to from the bow, to starboard", optional=True

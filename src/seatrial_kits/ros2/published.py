@@ -249,9 +249,34 @@ def wind(link: Ros2Ports, here: Here) -> Fields | None:
     """geometry_msgs/TwistStamped: velocity of the apparent wind in base_link, m/s."""
     if not link.wind_valid:
         return None
+    return {"header": here.header(BASE), "twist": {"linear": _wind(link)}}
+
+
+def wind_vector(link: Ros2Ports, here: Here) -> Fields | None:
+    """geometry_msgs/Vector3: the same velocity of the apparent wind, in base_link, m/s."""
+    if not link.wind_valid:
+        return None
+    return dict(zip("xyz", _wind(link), strict=True))
+
+
+def _wind(link: Ros2Ports) -> tuple[float, float, float]:
     speed, angle = link.wind_speed, link.wind_angle
-    blows = flu((speed * math.cos(angle), speed * math.sin(angle), 0.0))
-    return {"header": here.header(BASE), "twist": {"linear": blows}}
+    return flu((speed * math.cos(angle), speed * math.sin(angle), 0.0))
+
+
+def sonar(link: Ros2Ports, here: Here) -> Fields:
+    """sensor_msgs/LaserScan of one ping of a scanning sonar; without an echo inf (REP 117).
+
+    The angle is about the z axis up, so that one to starboard is negative, in [-pi, pi].
+    """
+    angle = math.remainder(-link.sonar_angle, math.tau)
+    return {
+        "header": here.header(FRAMES["sonar"]),
+        "angle_min": angle,
+        "angle_max": angle,
+        "range_max": _FAR,
+        "ranges": [link.sonar_distance if link.sonar_distance_valid else math.inf],
+    }
 
 
 def leak(link: Ros2Ports, here: Here) -> Fields:
@@ -315,6 +340,7 @@ FRAMES = {
     "dvl_report": "dvl_link",
     "water_depth": "echo_sounder_link",
     "temperature": "ctd_link",
+    "sonar": "sonar_link",
 }
 """Frames of sensors, by key of their topics."""
 
@@ -345,6 +371,8 @@ MEASURED: Mapping[str, Measurement] = {
     "water_speed": Measurement(("water_speed",), water_speed, ("water_speed_valid",)),
     "water_depth": Measurement(("water_depth",), water_depth, ("water_depth_valid",)),
     "wind": Measurement(("wind_speed",), wind, ("wind_angle", "wind_valid")),
+    "wind_vector": Measurement(("wind_speed",), wind_vector, ("wind_angle", "wind_valid")),
+    "sonar": Measurement(("sonar_distance",), sonar, ("sonar_distance_valid", "sonar_angle")),
     "leak": Measurement(("leaking",), leak),
     "temperature": Measurement(("water_temperature",), temperature),
     "battery": Measurement(("voltage",), battery, ("current", "charge")),

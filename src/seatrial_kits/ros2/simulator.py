@@ -11,6 +11,7 @@ from seatrial.links.interruption import Interruption
 from seatrial.links.watchdog import Waiting
 from seatrial.physics.craft.kinematics import to_ned
 
+from .action import StepsAction
 from .frames import enu
 from .participant import Participant
 from .ports import Ros2Ports
@@ -28,6 +29,7 @@ FEATURES = {
     "SIMULATION_STATE_PAUSE": 26,
     "STEP_SIMULATION_SINGLE": 31,
     "STEP_SIMULATION_MULTIPLE": 32,
+    "STEP_SIMULATION_ACTION": 33,
 }
 _STATES = {0: "stopped", PLAYING: "playing", PAUSED: "paused", 3: "quitting"}
 _OF_THE_RIG = (
@@ -35,6 +37,8 @@ _OF_THE_RIG = (
     *("LoadWorld", "GetAvailableWorlds", "GetCurrentWorld"),
 )
 _MOST_STEPS = 1_000_000
+Progress = Callable[[int, Mapping[str, Any]], None]
+"""Called after each step, with the number left, and the result of the last one."""
 _POLL_S = 0.005
 
 
@@ -42,8 +46,9 @@ class Simulator:
     """Services below ``name``: state, steps, and the vehicle as an entity.
 
     A paused simulation stands still in the link's step, and answers calls. Steps are the link's
-    sample periods. What cannot be done here (reset, spawning, setting a state) is answered as
-    the standard has it: RESULT_FEATURE_UNSUPPORTED, and a sentence.
+    sample periods, taken by the service or the action (`StepsAction`). What cannot be done here
+    (reset, spawning, setting a state) is answered as the standard has it:
+    RESULT_FEATURE_UNSUPPORTED, and a sentence.
     """
 
     def __init__(self, participant: Participant, name: str, link: Ros2Ports, entity: str) -> None:
@@ -51,7 +56,7 @@ class Simulator:
         self.paused = False
         self.paused_s = 0.0
         """Wall time that it stood still, s."""
-        self._stepping: tuple[int, Call] | None = None
+        self._stepping: tuple[int, Progress] | None = None
         handlers: Mapping[str, Handler] = {
             "GetSimulatorFeatures": self._features,
             "GetSimulationState": self._state,
@@ -68,6 +73,7 @@ class Simulator:
             Service(participant, f"{name}/{_snake(kind)}", f"simulation_interfaces/srv/{kind}", act)
             for kind, act in handlers.items()
         ]
+        self._action = StepsAction(participant, f"{name}/simulate_steps", self._begin, self._leave)
         self._now_ns = 0
 
     def serve(self, now_ns: int) -> None:
@@ -75,15 +81,16 @@ class Simulator:
         self._now_ns = now_ns
         for service in self._services:
             service.serve()
+        self._action.serve(now_ns)
 
     def stand_still(self, now_ns: int, others: Callable[[], None]) -> None:
         """Stand still while it is paused and no step is asked for; ``others`` are served too."""
         if self._stepping is not None:
-            left, call = self._stepping
-            self._stepping = (left - 1, call) if left > 1 else None
+            left, progress = self._stepping
+            self._stepping = (left - 1, progress) if left > 1 else None
+            progress(left - 1, _result(OK))
             if left > 1:
                 return
-            call.answer(_result(OK))
         begun, waiting = time.monotonic(), Waiting()
         if not self.paused:
             return
@@ -119,14 +126,29 @@ class Simulator:
             call.answer(_result(OK))
 
     def _step(self, call: Call) -> None:
-        steps = int(call.request.steps)
+        def progress(left: int, result: Mapping[str, Any]) -> None:
+            if not left:
+                call.answer(result)
+
+        refused = self._begin(int(call.request.steps), progress, INCORRECT_STATE)
+        if refused is not None:
+            call.answer(refused)
+
+    def _begin(
+        self, steps: int, progress: Progress, not_paused: int = FAILED
+    ) -> Mapping[str, Any] | None:
+        """Begin steps; return the result of a call that cannot be followed."""
         if not self.paused or self._stepping is not None:
-            call.answer(_result(INCORRECT_STATE, "steps are taken of a paused simulation"))
-        elif not 1 <= steps <= _MOST_STEPS:
-            said = f"{steps} steps were asked for, allowed 1 to {_MOST_STEPS}"
-            call.answer(_result(FAILED, said))
-        else:
-            self._stepping = steps, call
+            return _result(not_paused, "steps are taken of a paused simulation")
+        if not 1 <= steps <= _MOST_STEPS:
+            return _result(FAILED, f"{steps} steps were asked for, allowed 1 to {_MOST_STEPS}")
+        self._stepping = steps, progress
+        return None
+
+    def _leave(self) -> Mapping[str, Any]:
+        """Leave the steps that are left."""
+        self._stepping = None
+        return _result(FAILED, "the steps were cancelled")
 
     def _entities(self, call: Call) -> None:
         found, why = self._found(call.request.filters)

@@ -35,6 +35,8 @@ PUBLISHED: Mapping[str, Topic] = {
     "water_speed": Topic("speed_log", "geometry_msgs/msg/TwistStamped"),
     "water_depth": Topic("echo_sounder", "sensor_msgs/msg/Range"),
     "wind": Topic("wind", "geometry_msgs/msg/TwistStamped"),
+    "wind_vector": Topic("wind_vector", "geometry_msgs/msg/Vector3"),
+    "sonar": Topic("sonar", "sensor_msgs/msg/LaserScan"),
     "leak": Topic("leak", "std_msgs/msg/Bool"),
     "temperature": Topic("temperature", "sensor_msgs/msg/Temperature"),
     "battery": Topic("battery", "sensor_msgs/msg/BatteryState"),

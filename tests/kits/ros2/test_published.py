@@ -164,12 +164,31 @@ def test_the_wind_blows_to_port_of_the_bow_and_the_joints_are_those_that_are_the
     link.wind_speed, link.wind_angle, link.wind_valid = 5.0, math.radians(-30.0), True
     linear = MEASURED["wind"].make(link, here())["twist"]["linear"]
     assert linear == pytest.approx((5.0 * math.cos(math.radians(30.0)), 2.5, 0.0))
+    vector = MEASURED["wind_vector"].make(link, here())
+    assert (vector["x"], vector["y"], vector["z"]) == linear
     link.joint, speeds = (0.1, 1.2, 1e30), [30.0, *[1e30] * 7]
     link.motor_speed = speeds
     joints = MEASURED["joints"].make(link, here())
     assert joints["name"] == ["rudder", "sail", "motor1"]
     assert joints["position"][:2] == [0.1, 1.2]
     assert joints["velocity"][2] == 30.0
+
+
+def test_a_ping_to_starboard_is_a_scan_of_one_range_there(link):
+    link.sonar_distance, link.sonar_angle = 12.5, math.radians(90.0)
+    lost = MEASURED["sonar"].make(link, here())
+    assert lost["ranges"] == [math.inf]
+    link.sonar_distance_valid = True
+    scan = MEASURED["sonar"].make(link, here())
+    assert scan["ranges"] == [12.5]
+    assert scan["header"]["frame_id"] == "sonar_link"
+    # the point is where the turn about z up puts it: abeam to starboard is -y ahead-left-up
+    at = Rotation.from_euler("z", scan["angle_min"]).apply([12.5, 0.0, 0.0])
+    assert at == pytest.approx([0.0, -12.5, 0.0])
+    link.sonar_angle = math.radians(270.0)
+    scan = MEASURED["sonar"].make(link, here())
+    assert scan["angle_min"] == scan["angle_max"] == pytest.approx(math.pi / 2.0)
+    assert packed("sensor_msgs/msg/LaserScan", scan)
 
 
 def test_a_dive_is_pressure_and_an_echo_that_lacks_is_infinite(link):

@@ -6,11 +6,12 @@ from dataclasses import dataclass
 
 import pytest
 from cyclonedds.idl import IdlStruct, make_idl_struct
-from cyclonedds.idl.types import float64, int64, sequence, uint8, uint16, uint64
+from cyclonedds.idl.types import array, float64, int8, int64, sequence, uint8, uint16, uint64
 
 from seatrial import Simulation
 
 from .peer import (
+    LATCHED,
     LOOPBACK,
     Header,
     Node,
@@ -84,12 +85,56 @@ class Outcome(IdlStruct, typename="rcl_interfaces::msg::dds_::SetParametersResul
     reason: str
 
 
+@dataclass
+class Uuid(IdlStruct, typename="unique_identifier_msgs::msg::dds_::UUID_"):
+    uuid: array[uint8, 16]
+
+
+@dataclass
+class GoalInfo(IdlStruct, typename="action_msgs::msg::dds_::GoalInfo_"):
+    goal_id: Uuid
+    stamp: Time
+
+
+@dataclass
+class GoalStatus(IdlStruct, typename="action_msgs::msg::dds_::GoalStatus_"):
+    goal_info: GoalInfo
+    status: int8
+
+
+@dataclass
+class GoalStatuses(IdlStruct, typename="action_msgs::msg::dds_::GoalStatusArray_"):
+    status_list: sequence[GoalStatus]
+
+
+@dataclass
+class Goal(IdlStruct, typename=f"{PACKAGE}::action::dds_::SimulateSteps_Goal_"):
+    steps: uint64
+
+
+@dataclass
+class Outcomes(IdlStruct, typename=f"{PACKAGE}::action::dds_::SimulateSteps_Result_"):
+    result: Result
+
+
+@dataclass
+class Progress(IdlStruct, typename=f"{PACKAGE}::action::dds_::SimulateSteps_Feedback_"):
+    completed_steps: uint64
+    remaining_steps: uint64
+
+
+@dataclass
+class Feedback(IdlStruct, typename=f"{PACKAGE}::action::dds_::SimulateSteps_FeedbackMessage_"):
+    goal_id: Uuid
+    feedback: Progress
+
+
 def _service(kind, request, response):
     """Classes of a service's two messages, with the header of rmw_cyclonedds."""
-    package, name = kind
+    package, name, group = (*kind, "srv")[:3]
     header = {"client_guid": uint64, "sequence_number": int64}
     return [
-        make_idl_struct(suffix, f"{package}::srv::dds_::{name}_{suffix}_", {**header, **fields})
+        make_idl_struct(suffix, f"{package}::{group}::dds_::{name}_{suffix}_", {**header, **fields})
         for suffix, fields in (("Request", request), ("Response", response))
     ]
 
@@ -113,6 +158,15 @@ SERVICES = {
     "delete_entity": ((PACKAGE, "DeleteEntity"), {"entity": str}, {"result": Result}),
     "get_entity_state": (
         (PACKAGE, "GetEntityState"), {"entity": str}, {"result": Result, "state": EntityState}),
+    "simulate_steps/_action/send_goal": (
+        (PACKAGE, "SimulateSteps_SendGoal", "action"),
+        {"goal_id": Uuid, "goal": Goal}, {"accepted": bool, "stamp": Time}),
+    "simulate_steps/_action/get_result": (
+        (PACKAGE, "SimulateSteps_GetResult", "action"),
+        {"goal_id": Uuid}, {"status": int8, "result": Outcomes}),
+    "simulate_steps/_action/cancel_goal": (
+        ("action_msgs", "CancelGoal"),
+        {"goal_info": GoalInfo}, {"return_code": int8, "goals_canceling": sequence[GoalInfo]}),
     "inject_fault": (
         ("rcl_interfaces", "SetParameters"),
         {"parameters": sequence[Parameter]}, {"results": sequence[Outcome]}),
@@ -179,7 +233,15 @@ def running(domain, monkeypatch):
 
 def test_the_standard_s_calls(running):
     simulation, client = running
-    assert client.call("get_simulator_features", 0).features.features == [10, 24, 25, 26, 31, 32]
+    assert client.call("get_simulator_features", 0).features.features == [
+        10,
+        24,
+        25,
+        26,
+        31,
+        32,
+        33,
+    ]
     answer = client.call("get_simulation_state", 0)
     assert (answer.state.state, answer.result.result) == (1, 1)
     refused = client.call("step_simulation", 3)
@@ -210,6 +272,42 @@ def test_the_standard_s_calls(running):
     assert client.call("set_simulation_state", State(1)).result.result == 1
     time.sleep(0.05)
     assert simulation.get("autopilot.ros2.paused") > 0.1
+
+
+def test_steps_are_an_action_too(running):
+    """With feedback, a result that is waited for, a goal that is refused, and one that is cancelled."""
+    _, client = running
+    base = "simulate_steps/_action"
+    feedback = client.node.reader(f"/seatrial/{base}/feedback", Feedback)
+    status = client.node.reader(f"/seatrial/{base}/status", GoalStatuses, LATCHED)
+    goals = [Uuid(bytes([n] * 16)) for n in (1, 2, 3)]
+
+    def result_of(goal):
+        answer = client.call(f"{base}/get_result", goal)
+        return answer.status, answer.result.result.result
+
+    assert client.call(f"{base}/send_goal", goals[0], Goal(5)).accepted
+    assert result_of(goals[0]) == (6, 4)  # not paused: aborted
+    assert client.call("set_simulation_state", State(2)).result.result == 1
+    before = client.call("get_entity_state", "otter").state.header.stamp
+    assert client.call(f"{base}/send_goal", goals[1], Goal(5)).accepted
+    assert not client.call(f"{base}/send_goal", goals[1], Goal(5)).accepted
+    assert result_of(goals[1]) == (4, 1)
+    after = client.call("get_entity_state", "otter").state.header.stamp
+    assert (after.sec - before.sec) * 10**9 + after.nanosec - before.nanosec == 5 * 10**7
+    told = [each for each in feedback.take(10) if each.sample_info.valid_data]
+    assert [bytes(each.goal_id.uuid) for each in told] == [b"\2" * 16] * len(told)
+    counts = [(each.feedback.completed_steps, each.feedback.remaining_steps) for each in told]
+    assert counts == [(1, 4), (2, 3), (3, 2), (4, 1), (5, 0)]
+    assert client.call(f"{base}/send_goal", goals[2], Goal(1_000_000)).accepted
+    cancelled = client.call(f"{base}/cancel_goal", GoalInfo(Uuid(bytes(16)), Time(0, 0)))
+    assert cancelled.return_code == 0
+    assert [bytes(each.goal_id.uuid) for each in cancelled.goals_canceling] == [b"\3" * 16]
+    assert result_of(goals[2]) == (5, 4)
+    assert client.call(f"{base}/cancel_goal", GoalInfo(goals[2], Time(0, 0))).return_code == 3
+    assert result_of(Uuid(bytes([9] * 16))) == (0, 0)
+    last = status.take(10)[-1].status_list
+    assert [each.status for each in last] == [6, 4, 5]
 
 
 def test_a_fault_is_injected_and_what_is_none_refused(running):
