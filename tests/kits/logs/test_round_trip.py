@@ -15,6 +15,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from pymavlink.dialects.v20 import all as mavlink
 
+from seatrial.fmi.components.table import table_component
 from seatrial.links.text import Inbox
 from seatrial.trial.logs.formats import format_of, read_log
 from seatrial.trial.logs.steady_clock import steady
@@ -27,6 +28,7 @@ from seatrial_kits.can.run_log import BusLog
 from seatrial_kits.logs.imported import Wanted, imported, write_run
 from seatrial_kits.logs.mcap_file import write_mcap
 from seatrial_kits.logs.parquet_file import write_parquet
+from seatrial_kits.logs.played import played
 from seatrial_kits.logs.ros2_bag import write_ros2_bag
 from seatrial_kits.mavlink.tlog import TelemetryLog
 from seatrial_kits.nmea.nmea0183.player import Nmea0183Player
@@ -67,6 +69,25 @@ def channel_of(path, name):
     names = [each for each in found.channels if each.replace("/", ".").strip(".").startswith(name)]
     assert len(names) == 1, list(found.channels)
     return found.channels[names[0]]
+
+
+def assert_plays(path, channel):
+    """Check that a component that plays the log has the channel's values at its times."""
+    unit = 'unit = "1"' if channel.unit is None else f'unit = "{channel.unit}"'
+    entry = f'x = {{ channel = "{channel.name}", {unit} }}'
+    file = path.with_name("played.toml")
+    file.write_text(f'log = "{path.name}"\n[play]\n{entry}\n')
+    player = table_component(played(file))("boat")
+    player.set("beyond", "hold")
+    player.setup(0.0)
+    player.initialise()
+    player.begin()
+    since = np.round(channel.time - channel.time[0], 9)
+    for time, value in zip(since.tolist(), channel.values.tolist(), strict=True):
+        player.advance(time - 0.01, 0.01)
+        # Times are whole nanoseconds, between neighbours up to 2e6 apart in 10 ms.
+        assert player.get("x") == pytest.approx(value, rel=1e-9, abs=0.2), time
+        assert player.get("x_valid")
 
 
 @pytest.mark.parametrize("kind", ["csv", "mcap", "parquet", "rosbag2"])
