@@ -88,17 +88,18 @@ class Windows(DeckEstimate, Component):
         newest, step = self._grid - 1, self.sample_step()
         steps = t / step - newest
         if newest != self._future_of or steps > len(self._future):
-            self._foresee(t, max(math.ceil(steps) + 1, 2))
+            self._foresee(newest * step, max(math.ceil(steps) + 1, 2))
         return prediction.at(self._future, steps)
 
-    def _foresee(self, t: float, steps: int) -> None:
+    def _foresee(self, newest: float, steps: int) -> None:
+        """Predict from the samples, the last of which is of the time ``newest``."""
         samples = np.array(self._samples)
         self._future_of = self._grid - 1
         if self.predictor == "harmonic":
             self._future = prediction.harmonic(samples, max(steps, len(self._future)))
             return
-        if t - self._fitted_at > 0.25 * self.wave_period or not len(self._fitted):
-            self._fitted, self._fitted_at = prediction.coefficients(samples), t
+        if newest - self._fitted_at > 0.25 * self.wave_period or not len(self._fitted):
+            self._fitted, self._fitted_at = prediction.coefficients(samples), newest
         self._future = prediction.autoregressive(samples, self._fitted, steps)
 
     def _cost(self, t: float, T: float) -> float:
