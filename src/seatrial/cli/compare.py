@@ -78,11 +78,13 @@ def _compare_with_log(
     from ..trial.logs.residuals import HEADINGS, resampling_notes, residual_of
     from ..trial.logs.steady_clock import steady
     from ..trial.records.run_folder import load_run
+    from .reading import reading
     from .show import text_table
 
     matches, named = read_matches(match, "--match"), read_columns(columns) if columns else {}
     run = load_run(folder)
-    log = steady(read_log(path, format_name, named.pop("time", None)))
+    with reading(path):
+        log = steady(read_log(path, format_name, named.pop("time", None)))
     found, notes = pairs(run, log, matches, named)
     residuals = [residual_of(signal, channel) for signal, channel in found]
     residuals.sort(key=lambda each: 1.0 if each.fit is None else each.fit)

@@ -19,6 +19,7 @@ from ..trial.logs.formats import FORMATS, format_of, read_log
 from ..trial.logs.quantities import defaults, read_columns, series
 from .answer import answer
 from .options import LogColumns, LogFormat
+from .reading import reading
 from .show import console, print_notes, print_table
 
 _MOST_SHOWN = 40
@@ -36,7 +37,8 @@ def log(
     """Show the channels of a log: units, rates, ranges, gaps, and the quantities they serve."""
     named = read_columns(columns or [])
     name = format_name or format_of(path)
-    found = read_log(path, name, named.pop("time", None))
+    with reading(path):
+        found = read_log(path, name, named.pop("time", None))
     serves: dict[str, list[str]] = {}
     for what, column in {**defaults(found), **named}.items():
         serves.setdefault(series(found, what, column).channel.name, []).append(what)

@@ -56,6 +56,10 @@ class Watch:
         state = f"{passed:.1f} of {whole:g} s, {factor:.1f} x real time{case}"
         self._display.show((self._case + passed / whole) / self._cases, state)
 
+    def reading(self, share: float) -> None:
+        """Show how far a log has been read."""
+        self._display.show(share, "read")
+
     def campaign(self, passed: float, whole: float) -> None:
         """Show how far all runs of a campaign are, side by side; simulated time in s."""
         if self._begun is None:

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from seatrial.errors import InputError
+from seatrial.trial.logs.reading_progress import open_text
 
 from .frame import FD_LENGTHS, Frame
 
@@ -150,7 +151,7 @@ def _of_text(
     whole = _whole_messages(path)
     sequences: dict[int, int] = defaultdict(int)
     day, before = 0.0, None
-    with path.open(encoding="latin-1") as file:
+    with open_text(path, "latin-1") as file:
         for row, line in enumerate(file, 1):
             if not line.strip() or line.lstrip().startswith(("#", "//")):
                 continue

@@ -12,6 +12,7 @@ from rich.markup import escape
 
 from seatrial.cli.answer import answer
 from seatrial.cli.options import LogColumns, LogFormat
+from seatrial.cli.reading import reading
 from seatrial.cli.show import console, print_notes
 from seatrial.cli.statuses import FAILED
 from seatrial.cli.watch import Watch
@@ -75,7 +76,7 @@ def import_log(
     name = format_name or format_of(path)
     if name == "run":
         raise InputError(f"{path}: is a run folder already")
-    with console.status(f"reading {escape(str(path))}"):
+    with reading(path):
         log = from_zero(steady(read_log(path, name, named.pop("time", None))))
         wanted = Wanted(named, patterns, window_of(begin, end), step)
         found = imported(log, wanted)

@@ -13,6 +13,7 @@ from seatrial.trial.logs.channels import Log, Samples
 from seatrial.trial.logs.clock_times import date_of
 from seatrial.trial.logs.formats import Format
 from seatrial.trial.logs.quantities import QUANTITIES, Column
+from seatrial.trial.logs.reading_progress import open_bytes
 from seatrial.trial.logs.run_log import of_craft
 
 _MAGIC = b"\x89MCAP0\r\n"
@@ -33,7 +34,7 @@ def _read(path: Path, _: Column | None) -> Log:
     samples, skipped = Samples(), Counter[str]()
     units: dict[int, Mapping[str, str]] = {}
     begun: int | None = None
-    with path.open("rb") as file:
+    with open_bytes(path) as file:
         for row, (schema, channel, message) in enumerate(_messages(file, path, skipped), 1):
             if channel.message_encoding != "json":
                 skipped[f"messages {channel.topic} in {channel.message_encoding} are left out"] += 1

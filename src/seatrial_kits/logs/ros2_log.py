@@ -14,6 +14,7 @@ from seatrial.trial.logs.channels import Log, Samples
 from seatrial.trial.logs.clock_times import date_of
 from seatrial.trial.logs.formats import Format
 from seatrial.trial.logs.quantities import Column
+from seatrial.trial.logs.reading_progress import tell
 from seatrial.trial.records.quaternions import to_euler
 
 _NS = 10**9
@@ -44,6 +45,7 @@ def _read(path: Path, _: Column | None) -> Log:
     try:
         with AnyReader([path], default_typestore=get_typestore(Stores.ROS2_HUMBLE)) as bag:
             for row, (connection, recorded, raw) in enumerate(bag.messages(), 1):
+                tell(row / bag.message_count)
                 begun = recorded if begun is None else begun
                 message = bag.deserialize(raw, connection.msgtype)
                 time = (_stamp(message, recorded) - begun) / _NS

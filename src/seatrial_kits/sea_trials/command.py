@@ -14,6 +14,7 @@ from rich.table import Table
 
 from seatrial.cli.answer import answer
 from seatrial.cli.options import LogColumns, LogFormat
+from seatrial.cli.reading import reading
 from seatrial.cli.show import console, print_notes
 from seatrial.errors import InputError, unknown
 from seatrial.model.readable import number, person_scale
@@ -143,7 +144,8 @@ def _read(
         return done_in(load_run(log))
     if manoeuvre is None:
         raise InputError(f"--manoeuvre: one of {', '.join(FIGURES)} is needed")
-    record, notes = read_record(log, columns, format_name, window)
+    with reading(log):
+        record, notes = read_record(log, columns, format_name, window)
     if record.helm is None and not ordered:
         notes += (
             f"no helm is read: the order is taken to be given at {record.start:g} s, the first "

@@ -13,7 +13,9 @@ import pynmea2
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from pymavlink.dialects.v20 import all as mavlink
 
+from seatrial.fmi.components.table import table_component
 from seatrial.links.text import Inbox
 from seatrial.trial.logs.formats import format_of, read_log
 from seatrial.trial.logs.steady_clock import steady
@@ -26,7 +28,9 @@ from seatrial_kits.can.run_log import BusLog
 from seatrial_kits.logs.imported import Wanted, imported, write_run
 from seatrial_kits.logs.mcap_file import write_mcap
 from seatrial_kits.logs.parquet_file import write_parquet
+from seatrial_kits.logs.played import played
 from seatrial_kits.logs.ros2_bag import write_ros2_bag
+from seatrial_kits.mavlink.tlog import TelemetryLog
 from seatrial_kits.nmea.nmea0183.player import Nmea0183Player
 
 NUMBERS = st.floats(-1e6, 1e6)
@@ -65,6 +69,25 @@ def channel_of(path, name):
     names = [each for each in found.channels if each.replace("/", ".").strip(".").startswith(name)]
     assert len(names) == 1, list(found.channels)
     return found.channels[names[0]]
+
+
+def assert_plays(path, channel):
+    """Check that a component that plays the log has the channel's values at its times."""
+    unit = 'unit = "1"' if channel.unit is None else f'unit = "{channel.unit}"'
+    entry = f'x = {{ channel = "{channel.name}", {unit} }}'
+    file = path.with_name("played.toml")
+    file.write_text(f'log = "{path.name}"\n[play]\n{entry}\n')
+    player = table_component(played(file))("boat")
+    player.set("beyond", "hold")
+    player.setup(0.0)
+    player.initialise()
+    player.begin()
+    since = np.round(channel.time - channel.time[0], 9)
+    for time, value in zip(since.tolist(), channel.values.tolist(), strict=True):
+        player.advance(time - 0.01, 0.01)
+        # Times are whole nanoseconds, between neighbours up to 2e6 apart in 10 ms.
+        assert player.get("x") == pytest.approx(value, rel=1e-9, abs=0.2), time
+        assert player.get("x_valid")
 
 
 @pytest.mark.parametrize("kind", ["csv", "mcap", "parquet", "rosbag2"])
@@ -142,3 +165,26 @@ def test_sentences_through_their_text(folders, steps, seed):
     np.testing.assert_allclose([when for when, _ in found], times - times[0], atol=1e-6)
     log = read_log(folder / "boat.nmea").channels["HDT.headingT"]
     assert log.values.tolist() == [float(each) for each in headings]
+
+
+@settings(max_examples=15)
+@given(steps=STEPS, data=st.data())
+def test_a_vehicle_through_its_telemetry_log(folders, steps, data):
+    """Messages that come up to 0.9 s late, and out of order: their times are the vehicle's."""
+    folder, boots = folders(), np.cumsum(steps) * 10
+    values = [data.draw(st.floats(-3.0, 3.0, width=32)) for _ in boots]
+    delays = [data.draw(st.integers(0, 900)) for _ in boots]
+    log, boat = TelemetryLog(1_770_249_600_000_000), mavlink.MAVLink(None, 1, 1)
+    log.open(folder / "boat.tlog")
+    received = sorted(zip(boots.tolist(), values, delays, strict=True), key=lambda m: m[0] + m[2])
+    for boot, value, delay in received:
+        log.now = (boot + delay) / 1e3
+        message = mavlink.MAVLink_attitude_message(boot, 0.0, 0.0, value, 0.0, 0.0, 0.0)
+        log.write(message.pack(boat))
+    log.close()
+    found = steady(read_log(folder / "boat.tlog")).channels["ATTITUDE.yaw"]
+    np.testing.assert_allclose(np.diff(found.time), np.diff(boots) / 1e3, atol=1e-9)
+    assert found.values.tolist() == values
+    # The time 0 is the first reception; the shortest delay is that of the link.
+    first = received[0]
+    assert found.time[0] == pytest.approx((boots[0] + min(delays) - first[0] - first[2]) / 1e3)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from array import array
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from datetime import datetime
@@ -74,24 +75,39 @@ class Log:
         return self.place(channel, index).partition(", column")[0]
 
 
+@dataclass
+class _Entries:
+    """The entries of a channel so far, 24 bytes each."""
+
+    unit: str | None
+    times: array[float] = field(default_factory=lambda: array("d"))
+    values: array[float] = field(default_factory=lambda: array("d"))
+    rows: array[int] = field(default_factory=lambda: array("q"))
+
+
 class Samples:
     """Values as they come, message by message, to be made channels; see `distinguished`."""
 
     def __init__(self) -> None:
-        self._entries: dict[tuple[str, str], tuple[str | None, list[tuple[float, float, int]]]] = {}
+        self._entries: dict[tuple[str, str], _Entries] = {}
 
     def add(
         self, name: str, unit: str | None, time: float, value: float, row: int, source: str = ""
     ) -> None:
         """Add a value of a channel; see `Channel`."""
-        self._entries.setdefault((name, source), (unit, []))[1].append((time, value, row))
+        entries = self._entries.get((name, source))
+        if entries is None:
+            entries = self._entries[name, source] = _Entries(unit)
+        entries.times.append(time)
+        entries.values.append(value)
+        entries.rows.append(row)
 
     def channels(self) -> dict[str, Channel]:
         """Return the channels by name, in the order in which they began."""
         return distinguished(
             {
-                (name, source): channel(name, unit, *zip(*entries, strict=True))
-                for (name, source), (unit, entries) in self._entries.items()
+                (name, source): channel(name, each.unit, each.times, each.values, each.rows)
+                for (name, source), each in self._entries.items()
             }
         )
 

@@ -20,6 +20,7 @@ from .channels import Array, Channel, Integers, Log, channel
 from .clock_times import of_day, parsed_time, past_midnight
 from .formats import Format
 from .quantities import QUANTITIES, Column, series
+from .reading_progress import open_text
 from .run_log import of_craft
 
 _SEPARATORS = (";", "\t", ",")
@@ -141,7 +142,7 @@ def _seconds(table: _Table, line: int, cell: str) -> float:
 def _table(path: Path, time: str) -> _Table:
     """Return the table in a file, read by `_CHUNK` rows. Raises InputError."""
     try:
-        with path.open(encoding="utf-8-sig", newline="") as file:
+        with open_text(path, "utf-8-sig", newline="") as file:
             head = file.readline()
             separator = next((each for each in _SEPARATORS if each in head), ",")
             file.seek(0)

@@ -11,6 +11,7 @@ import typer
 from rich.markup import escape
 
 from seatrial.cli.answer import answer
+from seatrial.cli.reading import reading
 from seatrial.cli.show import console, print_notes, print_table, text_table
 from seatrial.errors import InputError, unknown
 from seatrial.trial.reports.report import REPORT
@@ -19,7 +20,7 @@ from seatrial_kits.sea_trials.log_record import MOTION
 
 from .craft import Craft
 from .page import HEADINGS, pass_rows, table_rows, write_page
-from .passes import SPEED, YAW, read_pass
+from .passes import SPEED, YAW, Pass, read_pass
 from .replay import craft_of
 from .study import ManoeuvreStudy, manoeuvre_study
 from .vehicle_copy import write_copy
@@ -62,8 +63,7 @@ def calibrate(
     names = [name.strip() for text in free or [] for name in text.split(",")]
     looked_for = craft.free(names)
     passes, checked = (
-        [read_pass(log, columns or [], lambda what: _unit(craft, what)) for log in each]
-        for each in (logs, checks or [])
+        [_read(log, columns, craft) for log in each] for each in (logs, checks or [])
     )
     notes = [note for each in (*passes, *checked) for note in each.notes]
     print_notes(notes)
@@ -89,6 +89,11 @@ def calibrate(
     console.print(f"report: {page}", soft_wrap=True)
     if file is None:
         raise typer.Exit(_REJECTED)
+
+
+def _read(log: Path, columns: list[str] | None, craft: Craft) -> Pass:
+    with reading(log):
+        return read_pass(log, columns or [], lambda what: _unit(craft, what))
 
 
 def _unit(craft: Craft, what: str) -> str:

@@ -45,7 +45,7 @@ class Motion:
     steps: Vector
     """(g,) s; the last is only there to read the last row."""
     inputs: Vector
-    """(m, g), of the middle of each step."""
+    """(m, g), the mean over each step."""
     start: Vector
     """State at the first row, a guess where it is among `STARTS`."""
 
@@ -61,8 +61,8 @@ class Predictor:
     Unknowns are the relative changes theta of the free parameters p = p_file (1 + theta), the
     current over ``speed``, north and east, and `STARTS`. Positions are those through the water plus
     the current times the time: in water that moves uniformly the same orders give the same
-    motion. Runge-Kutta of order 4, inputs linear between rows, exact derivatives of its steps,
-    which a compiler makes machine code of if it ``compiles`` and there is one.
+    motion. Runge-Kutta of order 4 with the mean of the inputs over each step, exact derivatives of
+    its steps, which a compiler makes machine code of if it ``compiles`` and there is one.
     """
 
     def __init__(
@@ -143,9 +143,18 @@ def _on_grid(shown: Record, inputs: Inputs, start: Vector, step: float) -> Motio
     counts = np.maximum(np.ceil(lengths / step - 1e-9), 1.0).astype(int)
     steps = np.append(np.repeat(lengths / counts, counts), step)
     begins = shown.start + np.concatenate(([0.0], np.cumsum(steps[:-1])))
-    middles = begins + steps / 2.0
-    given = np.array([np.interp(middles, inputs.time, column) for column in inputs.values.T])
+    given = _means(inputs, np.append(begins, begins[-1] + step))
     return Motion(shown, np.concatenate(([0], np.cumsum(counts))), steps, given, start)
+
+
+def _means(inputs: Inputs, edges: Vector) -> Vector:
+    """Return the means (m, g) of the inputs between edges (g + 1,): their impulse is kept."""
+    time = np.union1d(inputs.time, edges)
+    values = np.array([np.interp(time, inputs.time, column) for column in inputs.values.T])
+    areas = np.cumsum(np.diff(time) * (values[:, 1:] + values[:, :-1]) / 2.0, axis=1)
+    whole = np.column_stack((np.zeros(len(values)), areas))
+    means: Vector = np.diff(whole[:, np.searchsorted(time, edges)], axis=1) / np.diff(edges)
+    return means
 
 
 def _track(craft: Craft, motion: Motion) -> Vector:

@@ -23,8 +23,8 @@ from seatrial.system.system import System
 from .craft import Craft, craft_in
 from .passes import SPEED, YAW, Pass
 
-_SAMPLED = 0.05
-"""Time between two samples of what reaches the craft, s; a step of the rig if that is longer."""
+_BEYOND = 10.0
+"""How long the last orders hold, s: longer than a step of the rig."""
 _LARGEST = 1.05
 """Largest share of an order; measured ones overshoot a little and are held to 1."""
 _SETTLING = 20.0
@@ -109,25 +109,23 @@ def _replayed(craft: Craft, vehicle: str, variant: str | None, run: Pass) -> tup
     yaw, surge = (np.clip(run.orders[name], -1.0, 1.0) for name in (YAW, SPEED))
     rows = [(0.0, surge[0], yaw[0]), *zip(time, surge, yaw, strict=True)]
     # A step beyond the end is asked for.
-    rows.append((float(time[-1]) + 2.0 * _SAMPLED, surge[-1], yaw[-1]))
+    rows.append((float(time[-1]) + _BEYOND, surge[-1], yaw[-1]))
     at: list[float] = []
     reached: list[list[float]] = []
     with _started(vehicle, variant, _Orders(rows, run.is_held)) as (system, master):
-        count = max(round(_SAMPLED * NS / system.rig.step_ns), 1)
         while not at or at[-1] < time[-1]:
             at.append(master.time)
             reached.append(master.values(craft.name, craft.fed))
-            _advance(master, count, run)
+            _advance(master, run)
     shown = np.searchsorted(at, _SETTLING)
     # What reaches the craft at t holds until the next step: it is the value of that step's middle.
     middles = np.array(at[shown:]) + 0.5 * system.rig.step_ns / NS
     return middles - _SETTLING + run.record.start, np.array(reached[shown:])
 
 
-def _advance(master: Master, steps: int, run: Pass) -> None:
+def _advance(master: Master, run: Pass) -> None:
     try:
-        while steps:
-            steps -= master.advance(steps)
+        master.step()
     except SimulationError as error:
         raise InputError(f"{run.path}: the orders cannot be replayed: {error}") from None
 

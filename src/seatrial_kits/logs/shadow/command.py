@@ -23,6 +23,7 @@ from seatrial.cli.options import (
     changes_of,
     engine_named,
 )
+from seatrial.cli.reading import reading
 from seatrial.cli.show import (
     console,
     print_notes,
@@ -95,7 +96,7 @@ def shadow(
     )  # fmt: skip
     driven = Driven(rig, vehicle, changes_of(settings, choices, None, autopilot))
     name = format_name or format_of(log)
-    with console.status(f"reading {escape(str(log))}"):
+    with reading(log):
         found = from_zero(steady(read_log(log, name, named.pop("time", None))))
     with TemporaryDirectory() as folder:
         made = prepared(found, driven, asked, check or [], Path(folder))

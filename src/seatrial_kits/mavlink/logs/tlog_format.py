@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import contextlib
+from array import array
 from collections import Counter
 from collections.abc import Iterator, Mapping
-from itertools import pairwise
+from dataclasses import dataclass, field
+from mmap import ACCESS_READ, mmap
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -16,6 +18,7 @@ from seatrial.trial.logs.channels import Array, Channel, Log, channel, distingui
 from seatrial.trial.logs.clock_times import date_of
 from seatrial.trial.logs.formats import Format
 from seatrial.trial.logs.quantities import Column
+from seatrial.trial.logs.reading_progress import tell
 
 from .log_units import unit_of
 from .servo_outputs import DEFAULTS, servo_orders
@@ -24,6 +27,8 @@ _STAMP = 8
 _V1, _V2 = 0xFE, 0xFD
 _OVERHEAD = {_V1: 8, _V2: 12}
 _SIGNATURE = 13
+_TOLD_EVERY = 1000
+"""Messages between two reports of the place."""
 _OLDEST_US, _LATEST_US = 0, 4_102_444_800_000_000
 """1970 to 2100."""
 
@@ -38,7 +43,7 @@ class Frame(NamedTuple):
     """System and component, ``1.1``."""
 
 
-def tlog_frames(data: bytes, skipped: Counter[str]) -> Iterator[Frame]:
+def tlog_frames(data: bytes | mmap, skipped: Counter[str]) -> Iterator[Frame]:
     """Yield the frames with good checksums; of what is none, find the next stamp and frame."""
     from pymavlink.dialects.v20 import all as mavlink
 
@@ -61,6 +66,8 @@ def tlog_frames(data: bytes, skipped: Counter[str]) -> Iterator[Frame]:
             lost, place = True, place + 1
             continue
         lost, place, number = False, end, number + 1
+        if number % _TOLD_EVERY == 0:
+            tell(place / len(data))
         if message.get_type().startswith("UNKNOWN"):
             skipped["messages of an unknown kind are skipped"] += 1
         else:
@@ -68,7 +75,7 @@ def tlog_frames(data: bytes, skipped: Counter[str]) -> Iterator[Frame]:
             yield Frame(stamp, number, message, sender)
 
 
-def _length(data: bytes, place: int) -> int:
+def _length(data: bytes | mmap, place: int) -> int:
     """Return the length of the frame that begins at a place, 0 if none does."""
     magic = data[place]
     if magic not in _OVERHEAD or place + 2 >= len(data):
@@ -83,6 +90,7 @@ def begins_as_tlog(head: bytes) -> bool:
     return len(head) > _STAMP and _length(head, _STAMP) > 0 and 0 < stamp <= _LATEST_US
 
 
+_BOOT_TIME = "time_boot_ms"
 _RESTART_MS = 1000
 _NOT_AN_AUTOPILOT = 8  # MAV_AUTOPILOT_INVALID
 _UNKNOWN = {"GLOBAL_POSITION_INT.hdg": 65535, "GPS_RAW_INT.cog": 65535, "GPS_RAW_INT.vel": 65535}
@@ -108,6 +116,60 @@ _DEFAULTS: Mapping[str, tuple[str, ...]] = {
 }
 
 
+@dataclass
+class _Kind:
+    """The messages of one kind and sender, n of them."""
+
+    first: Any
+    """The first message, which has the names and units of the fields."""
+    stamps_us: array[int] = field(default_factory=lambda: array("q"))
+    numbers: array[int] = field(default_factory=lambda: array("q"))
+    numeric: list[str] = field(init=False)
+    """Fields that are numbers, or several."""
+    names: list[str] = field(init=False)
+    """Of each number, ``FIELD`` or ``FIELD[k]``."""
+    flat: array[float] = field(default_factory=lambda: array("d"))
+    """Numbers of the messages, one message after the other."""
+
+    def __post_init__(self) -> None:
+        values = {name: getattr(self.first, name) for name in self.first.fieldnames}
+        self.numeric = [name for name, value in values.items()
+                        if isinstance(value, (int, float, list))]  # fmt: skip
+        self.names = [
+            part
+            for name in self.numeric
+            for part in (
+                [f"{name}[{k}]" for k in range(len(values[name]))]
+                if isinstance(values[name], list)
+                else [name]
+            )
+        ]
+
+    def take(self, frame: Frame) -> None:
+        """Add a message."""
+        self.stamps_us.append(frame.stamp_us)
+        self.numbers.append(frame.number)
+        for name in self.numeric:
+            value = getattr(frame.message, name)
+            if isinstance(value, list):
+                self.flat.extend(value)
+            else:
+                self.flat.append(value)
+
+    @property
+    def table(self) -> Array:
+        """The numbers (n, names)."""
+        return np.asarray(self.flat).reshape(len(self.numbers), len(self.names))
+
+    def column(self, name: str) -> Array | None:
+        """Return the numbers (n,) of a field, None if there is none of that name."""
+        return self.table[:, self.names.index(name)] if name in self.names else None
+
+
+_Kinds = Mapping[tuple[str, str], _Kind]
+"""By kind and sender."""
+
+
 def _read(path: Path, _: Column | None) -> Log:
     """Return the log of a .tlog: a channel for each number of each kind of message, ``KIND.FIELD``.
 
@@ -119,79 +181,79 @@ def _read(path: Path, _: Column | None) -> Log:
     Raises InputError for a file without a frame of MAVLink.
     """
     skipped: Counter[str] = Counter()
-    kinds: dict[tuple[str, str], list[Frame]] = {}
-    for frame in tlog_frames(path.read_bytes(), skipped):
-        kinds.setdefault((frame.message.get_type(), frame.sender), []).append(frame)
+    kinds: dict[tuple[str, str], _Kind] = {}
+    parameters: dict[str, float] = {}
+    with path.open("rb") as file, mmap(file.fileno(), 0, access=ACCESS_READ) as data:
+        for frame in tlog_frames(data, skipped):
+            kind = frame.message.get_type()
+            own = kinds.get((kind, frame.sender))
+            if own is None:
+                own = kinds[kind, frame.sender] = _Kind(frame.message)
+            own.take(frame)
+            if kind == "PARAM_VALUE":
+                parameters[frame.message.param_id] = frame.message.param_value
     if not kinds:
         raise InputError(f"{path}: no frame of MAVLink after a time stamp was found: no tlog")
-    begun = min(frames[0].stamp_us for frames in kinds.values())
+    begun = min(each.stamps_us[0] for each in kinds.values())
     delays = {sender: _delay(kinds, sender, skipped) for _, sender in kinds}
     found: dict[tuple[str, str], Channel] = {}
-    parameters: dict[str, float] = {}
-    for (kind, sender), frames in kinds.items():
-        if kind == "PARAM_VALUE":
-            parameters |= {each.message.param_id: each.message.param_value for each in frames}
-        elif kind == "GPS_RAW_INT":
-            fixed = [each for each in frames if each.message.fix_type >= _FIX_2D]
-            skipped["messages GPS_RAW_INT without a fix are left out"] += len(frames) - len(fixed)
-            found |= _channels(kind, sender, fixed, _times(fixed, delays[sender], begun))
-        else:
-            found |= _channels(kind, sender, frames, _times(frames, delays[sender], begun))
+    for (kind, sender), each in kinds.items():
+        if kind != "PARAM_VALUE":
+            found |= _channels(kind, sender, each, _times(each, delays[sender], begun), skipped)
     channels = distinguished(found, _autopilot(kinds))
     channels |= _derived(channels, parameters)
     notes = tuple(f"{count} {what}" for what, count in skipped.items() if count)
     return Log(path, channels, start=date_of(begun / 1e6), notes=notes)
 
 
-def _delay(
-    kinds: Mapping[tuple[str, str], list[Frame]], sender: str, skipped: Counter[str]
-) -> float | None:
+def _delay(kinds: _Kinds, sender: str, skipped: Counter[str]) -> float | None:
     """Return what leads from a vehicle's clock to the recorder's, us; None if it restarted."""
-    frames = [frame for (_, by), own in kinds.items() if by == sender for frame in own
-              if "time_boot_ms" in frame.message.fieldnames]  # fmt: skip
-    frames.sort(key=lambda frame: frame.number)
-    boots = [frame.message.time_boot_ms for frame in frames]
-    if any(later < before - _RESTART_MS for before, later in pairwise(boots)):
+    parts = [
+        (each.numbers, each.stamps_us, boots)
+        for (_, by), each in kinds.items()
+        if by == sender and (boots := each.column(_BOOT_TIME)) is not None
+    ]
+    if not parts:
+        return None
+    numbers, stamps, boots = (np.concatenate(each) for each in zip(*parts, strict=True))
+    if np.any(np.diff(boots[np.argsort(numbers)]) < -_RESTART_MS):
         skipped[f"restarts of {sender}: its times are those at which messages were received"] += 1
         return None
-    stamps = (frame.stamp_us - 1000 * frame.message.time_boot_ms for frame in frames)
-    return min(stamps, default=None)
+    return float(np.min(stamps - 1000.0 * boots))
 
 
-def _times(frames: list[Frame], delay: float | None, begun: float) -> Array:
+def _times(kind: _Kind, delay: float | None, begun: int) -> Array:
     """Return the times of messages of one kind, s from the beginning of the log."""
-    if delay is None or not frames or "time_boot_ms" not in frames[0].message.fieldnames:
-        stamps = np.array([each.stamp_us for each in frames], np.float64)
-    else:
-        stamps = np.array([1000 * each.message.time_boot_ms + delay for each in frames])
-    return (stamps - begun) / 1e6
+    boots = kind.column(_BOOT_TIME)
+    moments = np.asarray(kind.stamps_us) if delay is None or boots is None else boots * 1e3 + delay
+    return np.asarray((moments - begun) / 1e6)
 
 
-def _autopilot(kinds: Mapping[tuple[str, str], list[Frame]]) -> str | None:
+def _autopilot(kinds: _Kinds) -> str | None:
     senders = [
-        (frame.message.get_srcSystem(), frame.message.get_srcComponent(), frame.sender)
-        for (kind, _), (frame, *_) in kinds.items()
-        if kind == "HEARTBEAT" and frame.message.autopilot != _NOT_AN_AUTOPILOT
+        (each.first.get_srcSystem(), each.first.get_srcComponent(), sender)
+        for (kind, sender), each in kinds.items()
+        if kind == "HEARTBEAT" and each.first.autopilot != _NOT_AN_AUTOPILOT
     ]
     return min(senders)[2] if senders else None
 
 
 def _channels(
-    kind: str, sender: str, frames: list[Frame], time: Array
+    kind: str, sender: str, messages: _Kind, time: Array, skipped: Counter[str]
 ) -> dict[tuple[str, str], Channel]:
     """Return the numbers of messages of one kind, by name and sender."""
+    table, rows = messages.table, np.asarray(messages.numbers)
+    if kind == "GPS_RAW_INT":
+        fixed = table[:, messages.names.index("fix_type")] >= _FIX_2D
+        skipped["messages GPS_RAW_INT without a fix are left out"] += int((~fixed).sum())
+        table, rows, time = table[fixed], rows[fixed], time[fixed]
     found: dict[tuple[str, str], Channel] = {}
-    rows = [each.number for each in frames]
-    for field in frames[0].message.fieldnames if frames else ():
-        values = np.array([getattr(each.message, field) for each in frames])
-        if values.dtype.kind not in "iuf":
-            continue
-        factor, unit = unit_of(frames[0].message.fieldunits_by_name.get(field, ""))
-        name = f"{kind}.{field}"
+    for place, part in enumerate(messages.names if len(rows) else ()):
+        units = messages.first.fieldunits_by_name
+        factor, unit = unit_of(units.get(part.partition("[")[0], ""))
+        name, values = f"{kind}.{part}", table[:, place]
         known = np.where(values == _UNKNOWN.get(name), np.nan, values * factor)
-        names = [name] if known.ndim == 1 else [f"{name}[{k}]" for k in range(known.shape[1])]
-        for part, column in zip(names, known.reshape(len(frames), -1).T, strict=True):
-            found[part, sender] = channel(part, unit, time, column, rows)
+        found[name, sender] = channel(name, unit, time, known, rows)
     return found
 
 

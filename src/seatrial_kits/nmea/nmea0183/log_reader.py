@@ -16,6 +16,7 @@ import numpy as np
 from seatrial.errors import InputError
 from seatrial.trial.logs.channels import Array, Log, Samples
 from seatrial.trial.logs.clock_times import date_of, of_day, parsed_time, past_midnight
+from seatrial.trial.logs.reading_progress import open_text
 
 from .codec import decode
 from .log_fields import KINDS, SENTENCE, is_valid, values_of
@@ -108,7 +109,7 @@ def read(path: Path) -> Log:
 
 def _lines(path: Path, skipped: Counter[str]) -> list[_Line]:
     found = []
-    with path.open(encoding="latin-1") as file:
+    with open_text(path, "latin-1") as file:
         for number, line in enumerate(file, 1):
             sentence = SENTENCE.search(line)
             if sentence is not None and sentence.group()[3:6] not in KINDS:

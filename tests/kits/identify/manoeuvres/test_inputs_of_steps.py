@@ -1,0 +1,24 @@
+"""Inputs of the steps of a prediction keep the impulse of what was replayed."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from seatrial_kits.identify.manoeuvres.prediction import _means
+from seatrial_kits.identify.manoeuvres.replay import Inputs
+
+
+def test_the_impulse_of_each_step_is_kept():
+    """A thrust that jumps and settles, 10 ms apart, in steps of 25 ms: by closed form."""
+    lag, time = 0.1, np.arange(0.005, 2.0, 0.01)
+    thrust = np.where(time < 0.5, 0.0, 100.0 * (1.0 - np.exp(-(time - 0.5) / lag)))
+    edges = np.arange(0.0, 1.99, 0.025)
+    found = _means(Inputs(time, np.column_stack((thrust, 2.0 * time + 1.0))), edges)
+    assert found.shape == (2, len(edges) - 1)
+    impulse = np.cumsum(found * np.diff(edges), axis=1)
+    past = np.maximum(edges[1:] - 0.5, 0.0)
+    exact = 100.0 * (past - lag * (1.0 - np.exp(-past / lag)))
+    # Trapezia of 10 ms: h^2 / 12 of the change of the slope, 1000 N/s, of which the jump has all.
+    np.testing.assert_allclose(impulse[0], exact, atol=2.0 * 0.01**2 / 12.0 * 1000.0)
+    inside = edges[1:-1] + 0.0125
+    np.testing.assert_allclose(found[1][1:], 2.0 * inside + 1.0, rtol=1e-12)
