@@ -8,7 +8,7 @@ import pytest
 
 from seatrial.control.deck_landing import laws, prediction, tracking
 from seatrial.control.multirotor_attitude import MultirotorAttitude
-from seatrial.physics.environment.wave_follower import drawn, period_of
+from seatrial.physics.environment.wave_follower import drawn, moved, period_of
 
 HERE = Path(__file__).parents[1] / "reference" / "drone"
 SIZES = {"hydrone": ((1.168, 0.517, 0.043), 0.2), "wamv": ((4.05, 2.44, 0.15), 1.0)}
@@ -104,7 +104,9 @@ def errors_of(predict, deck, height):
         raft = drawn(size, height, period, draw.uniform(0, math.pi), pad, draw)
         rows = []
         for k in range(230):
-            (heave, north, east, _, _), _ = raft.moved(k * period / prediction.PER_PERIOD)
+            (heave, north, east, _, _), _ = moved(
+                raft.components, k * period / prediction.PER_PERIOD
+            )
             up = pad * math.cos(math.atan(north)) * math.cos(math.atan(east))
             rows.append([heave + up, north, east])
         true = np.array(rows)
