@@ -16,6 +16,7 @@ NATIVE = [
     "bluerov2-drive",
     "collision",
     "dive",
+    "drone-landing-deck",
     "glide",
     "gloria-backstepping-0",
     "gloria-backstepping-135",

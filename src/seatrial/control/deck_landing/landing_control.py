@@ -147,7 +147,11 @@ class DeckLandingControl(Windows, DeckEstimate, Sampled):
                 self._change(WAIT if self.control == "predictive" else DESCEND, t)
         elif mode == WAIT and lost > 1.0:
             self._change(TRACK, t)
-        elif mode == WAIT and self.finds_window(t, t - self._since, height):
+        elif (
+            self.control == "predictive"
+            and mode == WAIT
+            and self.finds_window(t, t - self._since, height)
+        ):
             self._change(DESCEND, t)
         elif mode == DESCEND and self._must_go_around(t, height, off, lost):
             self._around += 1.0

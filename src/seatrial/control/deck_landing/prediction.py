@@ -53,10 +53,17 @@ def coefficients(samples: Samples, column: int, mean: float) -> list[float]:
         if place >= ORDER:
             products = [p + recent[0] * y for p, y in zip(products, recent, strict=True)]
     oldest = [samples[ORDER - 1 - i][column] - mean for i in range(ORDER)]
-    rows = [products]
+    return _fitted(products, oldest, recent)
+
+
+def _fitted(
+    products: Sequence[float], oldest: Sequence[float], newest: Sequence[float]
+) -> list[float]:
+    """Return the coefficients for the sums of products, and the samples at both ends."""
+    rows = [[*products]]
     for i in range(ORDER):
         later = [
-            p + oldest[i] * oldest[j] - recent[i] * recent[j] for j, p in enumerate(rows[i][:ORDER])
+            p + oldest[i] * oldest[j] - newest[i] * newest[j] for j, p in enumerate(rows[i][:ORDER])
         ]
         rows.append([products[i + 1], *later])
     trace = 0.0
@@ -74,16 +81,17 @@ def _solved(matrix: Sequence[Sequence[float]], right: Sequence[float]) -> list[f
     """Return x of A x = b by elimination without exchanges, for a positive definite A."""
     rows = [[*row, own] for row, own in zip(matrix, right, strict=True)]
     for i in range(ORDER):
+        # A row that is eliminated loses its first element: row i begins with its pivot.
         for k in range(i + 1, ORDER):
-            share = rows[k][i] / rows[i][i]
-            rows[k] = [p - share * q for p, q in zip(rows[k], rows[i], strict=True)]
+            share = rows[k][0] / rows[i][0]
+            rows[k] = [p - share * q for p, q in zip(rows[k][1:], rows[i][1:], strict=True)]
     found: list[float] = []
     for i in range(ORDER):
         row = rows[ORDER - 1 - i]
-        own = row[ORDER]
-        for p, x in zip(row[ORDER - i : ORDER], found, strict=True):
+        own = row[-1]
+        for p, x in zip(row[1:-1], found, strict=True):
             own = own - p * x
-        found = [own / row[ORDER - 1 - i], *found]
+        found = [own / row[0], *found]
     return found
 
 
