@@ -44,6 +44,8 @@ NATIVE = [
     "hydrone-deck-landing-slip",
     "hydrone-deck-landing-waves",
     "hydrone-deck-limits",
+    "hydrone-drone-landing",
+    "hydrone-drone-landing-waves",
     "hydrone-landing",
     "hydrone-landing-waves",
     "hydrone-open-landing",
