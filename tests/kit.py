@@ -6,6 +6,9 @@ from pathlib import Path
 
 import pytest
 
+OF_PROFILES = ("arduino", "ardupilot", "can", "gprs", "mavlink", "nmea", "px4", "ros2", "videoray")
+"""Kits whose links stand in the profiles of shipped vehicles."""
+
 _KITS = Path(__file__).parents[1] / "src/seatrial_kits"
 
 

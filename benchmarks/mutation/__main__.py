@@ -32,7 +32,7 @@ TESTS = tuple(
     f"tests/{name}"
     for name in ("base", "control", "craft", "devices", "environment", "sea", "seabed")
 )
-SLOWEST = 60
+SLOWEST = 180
 """Seconds of processor beyond which a test file is left out."""
 FIRST = 4
 """Test files that a mutant meets before the others are read."""

@@ -97,7 +97,7 @@ def test_a_file_without_a_class_is_answered_with_its_classes(tmp_path: Path) -> 
     assert f"none.py: there is no file {tmp_path / 'none.py'}" in done.stderr
 
 
-@needs_kits("can")
+@needs_kits("can", "mavlink")
 def test_a_check_opens_no_link(tmp_path: Path) -> None:
     """The gateway's own port is in use: by another run, or somebody else."""
     with socket.socket() as other:

@@ -15,7 +15,7 @@ from seatrial.system.profile.profile import check_profile, load_profile
 from seatrial.trial.files.trial import load_trial
 from seatrial.trial.running.run import run_trial
 from tests.command import seatrial
-from tests.kits.arduino.bench import need
+from tests.kit import needs_kits
 
 NAME = "my-boat_2"
 VEHICLE, PILOT = (f"harness/vehicles/{NAME}/{file}.toml" for file in ("vehicle", "pilot"))
@@ -104,6 +104,7 @@ def test_every_number_is_marked_as_invented(made):
     assert all("invented" in s["source"] or "no sensor" in s["source"] for s in sections)
 
 
+@needs_kits("mavlink", "nmea")
 @every_made
 def test_the_profile_is_sound(made):
     profile = check_profile(NAME)
@@ -143,6 +144,7 @@ def test_it_sets_out_to_the_east(made):
     assert run(made, NAME).returncode == 0
 
 
+@needs_kits("native")
 @pytest.mark.long
 @pytest.mark.interop
 @every_made
@@ -163,6 +165,7 @@ def test_its_course_is_passed(made, request):
     assert done.returncode == 0, done.stdout
 
 
+@needs_kits("mavlink")
 @pytest.mark.slow
 @every_made
 def test_it_waits_for_a_ground_station(made):
@@ -172,6 +175,7 @@ def test_it_waits_for_a_ground_station(made):
     assert "PASS  nobody arms it" in done.stdout
 
 
+@needs_kits("mavlink")
 @pytest.mark.slow
 def test_its_mission_runs_for_ground_stations(made):
     assert new(made, "trials").returncode == 0
@@ -180,6 +184,7 @@ def test_its_mission_runs_for_ground_stations(made):
     assert done.returncode == 0, done.stderr
 
 
+@needs_kits("nmea")
 def test_a_vehicle_under_an_autopilot_without_a_trial_of_its_own_sets_out(made):
     done = run(made, NAME, "--autopilot", "nmea0183", "--set", "stop=1 s")
     assert "it gets under way to the east" in done.stdout
@@ -253,6 +258,7 @@ def test_its_drawing_moves_with_its_parts(made, request):
     assert {each["port"] for each in moved} == MOVING[like_of(request)]
 
 
+@needs_kits("mavlink")
 @pytest.mark.sampled(2)
 @every_made
 def test_its_components_are_drawn(made):
@@ -266,6 +272,7 @@ def test_its_components_are_drawn(made):
 # ---------------------------------------------------------------------- ArduPilot and sketch
 
 
+@needs_kits("ardupilot", "nmea")
 @every_kind
 def test_what_ardupilot_needs_is_added(like, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
@@ -289,8 +296,11 @@ def test_what_ardupilot_needs_is_added(like, tmp_path, monkeypatch):
         assert ends == [1100.0, 1500.0, 1900.0]
 
 
+@needs_kits("arduino", "nmea")
 @pytest.mark.slow
 def test_its_sketch_turns_it_east(made):
+    from tests.kits.arduino.bench import need
+
     need("host")
     assert new(made, "sketch-of").returncode == 0
     assert files(made).keys() == WRITTEN | SKETCH
@@ -322,6 +332,7 @@ def test_there_must_be_a_profile_to_add_to(tmp_path):
 # ---------------------------------------------------------------------- profiles cut short
 
 
+@needs_kits("mavlink")
 @pytest.mark.parametrize("made", ["usv", "auv"], indirect=True)
 def test_under_guidance_its_profile_needs_actuators_and_sensors_only(made):
     path = made / PROFILE
@@ -336,6 +347,7 @@ def test_under_guidance_its_profile_needs_actuators_and_sensors_only(made):
     assert "unknown section 'links.ground'" in done.stderr
 
 
+@needs_kits("mavlink", "nmea")
 def test_what_a_link_takes_by_default_is_a_note(made):
     path = made / PROFILE
     text = path.read_text("utf-8")

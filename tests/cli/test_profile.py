@@ -11,11 +11,10 @@ from seatrial.system.profile.kinds import GROUPS, keys
 from seatrial.system.profile.profile import load_profile
 from tests.command import seatrial
 from tests.cosim.test_profile import GOOD
-from tests.kit import needs_kits
-
-pytestmark = needs_kits("arduino", "ardupilot", "can", "mavlink", "nmea", "px4", "videoray")
+from tests.kit import OF_PROFILES, needs_kits
 
 
+@needs_kits(*OF_PROFILES)
 @pytest.mark.parametrize("name", sorted(available("hil_profiles")))
 def test_shipped_profiles_have_no_problem(name: str, tmp_path: Path) -> None:
     done = seatrial("profile", "check", name, cwd=tmp_path)
@@ -23,6 +22,7 @@ def test_shipped_profiles_have_no_problem(name: str, tmp_path: Path) -> None:
     assert done.stdout.endswith(f"{name}.toml: no problem found\n")
 
 
+@needs_kits("mavlink")
 def test_mistakes_are_reported_with_file_and_key(write, tmp_path: Path) -> None:
     text = GOOD.replace("system_id = 7", "system_id = 256").replace('"2 cm"', '"-2 cm"')
     write("boat.toml", text)
@@ -47,6 +47,7 @@ def rows(text: str, title: str) -> list[str]:
     return lines[: lines.index("")] if "" in lines else lines
 
 
+@needs_kits("mavlink")
 def test_describe_shows_what_the_file_says_in_units_that_people_read(write, tmp_path: Path) -> None:
     write("boat.toml", GOOD.replace('"A boat"', '"A [red] boat"'))
     done = seatrial("profile", "describe", "boat.toml", cwd=tmp_path)
@@ -76,6 +77,7 @@ def test_describe_shows_what_the_file_says_in_units_that_people_read(write, tmp_
     assert any(line.split()[:4] == ["heading_noise", "0.5", "deg", "profile"] for line in heading)
 
 
+@needs_kits(*OF_PROFILES)
 @pytest.mark.parametrize("name", sorted(available("hil_profiles")))
 def test_describe_shows_every_parameter_of_every_table(name: str, tmp_path: Path) -> None:
     done = seatrial("profile", "describe", name, cwd=tmp_path)
@@ -89,6 +91,7 @@ def test_describe_shows_every_parameter_of_every_table(name: str, tmp_path: Path
             assert [line.split()[0] for line in shown[first:]] == list(keys(group, kind))
 
 
+@needs_kits(*OF_PROFILES)
 def test_describe_shows_what_a_ground_station_tunes(tmp_path: Path) -> None:
     done = seatrial("profile", "describe", "mariner", cwd=tmp_path)
     shown = [line.split() for line in rows(done.stdout, "tunables of links.ground")]
@@ -99,6 +102,7 @@ def test_describe_shows_what_a_ground_station_tunes(tmp_path: Path) -> None:
     assert ["tunables", "11,", "below", "profile"] in [words[:4] for words in link]
 
 
+@needs_kits(*OF_PROFILES)
 def test_describe_shows_which_sensor_reaches_a_firmware(tmp_path: Path) -> None:
     done = seatrial("profile", "describe", "bluerov2", cwd=tmp_path)
     rows = [line.split() for line in done.stdout.splitlines()]

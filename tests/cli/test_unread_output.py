@@ -13,7 +13,7 @@ import pytest
 
 from seatrial.cli import commands
 from seatrial.shipped import shipped_folder
-from tests.kit import needs_kits
+from tests.kit import OF_PROFILES, needs_kits
 
 from ..command import seatrial
 
@@ -49,7 +49,7 @@ os.write(2, b"statuses:" + json.dumps(found).encode())
 
 
 @pytest.mark.slow
-@needs_kits("arduino", "ardupilot", "can", "mavlink", "nmea", "px4", "videoray")
+@needs_kits(*OF_PROFILES)
 @pytest.mark.parametrize("buffered", [True, False])
 def test_a_reader_that_is_gone_changes_no_status(buffered: bool, tmp_path: Path) -> None:
     (tmp_path / "one.stream").write_text(STREAM)

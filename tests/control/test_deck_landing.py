@@ -76,6 +76,15 @@ def test_the_track_follows_an_oscillation():
     assert np.std(errors[50:]) < 0.015
 
 
+def test_a_first_sight_leaves_the_velocity_open():
+    x, P = tracking.first(np.array([1.0, 2.0, 3.0]))
+    v = np.array([0.4, -0.2, 0.1])
+    found, left = tracking.corrected(x, P, 1, v, 0.5)
+    # Of two independent measurements with the variances 10 and 0.25 (m/s)^2.
+    np.testing.assert_allclose(found, [[1.0, 2.0, 3.0], v * 10 / 10.25, [0.0] * 3], rtol=1e-12)
+    np.testing.assert_allclose(np.diag(left), [100.0, 1 / (1 / 10 + 1 / 0.25), 1.0], rtol=1e-12)
+
+
 def test_ahead_is_exact_to_third_order_of_an_oscillation():
     x = np.array([[math.sin(0.3)], [2 * math.cos(0.3)], [-4 * math.sin(0.3)]])
     later = tracking.ahead(x, 0.05, 2.0)

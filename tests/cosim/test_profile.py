@@ -8,9 +8,9 @@ from seatrial.devices.actuators.thruster import Thruster
 from seatrial.errors import InputError
 from seatrial.fmi.components.index import component_class
 from seatrial.system.profile.profile import Profiles, check_profile, load_profile
-from tests.kit import needs_kits
+from tests.kit import OF_PROFILES, needs_kits
 
-pytestmark = needs_kits("arduino", "ardupilot", "can", "mavlink", "nmea", "px4", "videoray")
+pytestmark = needs_kits("mavlink")
 
 GOOD = """\
 title = "A boat"
@@ -355,6 +355,7 @@ def test_file_that_is_not_there():
 SHIPPED = sorted((Path(__file__).parents[2] / "hil_profiles").glob("*.toml"))
 
 
+@needs_kits(*OF_PROFILES)
 @pytest.mark.parametrize("path", SHIPPED, ids=lambda path: path.stem)
 def test_shipped_profile_fits_its_components(path):
     profile = check_profile(str(path))
@@ -385,6 +386,7 @@ def test_sections_are_found_in_the_rigs_profile_or_in_the_one_they_name(write):
         Profiles(None, write("rig.toml", "").parent).find("sensors.gnss", "here")
 
 
+@needs_kits("nmea")
 def test_a_link_that_may_lack_is_one_of_its_kind_with_what_the_rest_of_the_profile_says(write):
     write("rig.toml", "")
     profiles = Profiles("hydrone", write("rig.toml", "").parent)

@@ -15,7 +15,7 @@ from seatrial.system.system import System
 from seatrial.system.values import port_scalars
 from tests.kit import needs_kits
 
-pytestmark = needs_kits("arduino", "ardupilot", "can", "mavlink", "nmea", "px4", "videoray")
+pytestmark = needs_kits("arduino", "mavlink", "nmea", "videoray")
 
 BY_HAND = Path(__file__).parents[1] / "reference" / "connections"
 RENAMED = {

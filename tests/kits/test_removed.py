@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import subprocess
+import sys
 import tomllib
 from pathlib import Path
 
@@ -20,37 +21,48 @@ NOTICING = ("tests/api", "tests/cli", "tests/cosim", "tests/kits/test_kits.py", 
 
 
 def needing(kit: str) -> list[str]:
-    """Return a kit with those whose manifests need it."""
-    manifests = {
-        name: tomllib.loads((ROOT / "src/seatrial_kits" / name / "kit.toml").read_text("utf-8"))
-        for name in KITS
+    """Return a kit with those whose manifests need it, or a kit that needs it."""
+    files = {name: ROOT / "src/seatrial_kits" / name / "kit.toml" for name in KITS}
+    needs = {
+        name: tomllib.loads(p.read_text("utf-8")).get("needs", ()) for name, p in files.items()
     }
-    return [kit, *(name for name, each in manifests.items() if kit in each.get("needs", ()))]
+    gone = [kit]
+    for lost in gone:  # grows on the way
+        gone += [name for name in KITS if lost in needs[name] and name not in gone]
+    return gone
 
 
-def passes(copy: Path, *tests: str) -> None:
-    python = str(copy / ".venv/bin/python")
+def passes(python: str, folder: Path, *tests: str) -> None:
     ignored = [f"--ignore={path}" for path in WHOLE]
     command = [python, "-m", "pytest", "-n", "auto", "-m", "not slow and not interop and not long"]
     done = subprocess.run(
-        [*command, *ignored, "--tb=line", *tests], cwd=copy, capture_output=True, text=True
+        [*command, *ignored, "--tb=line", *tests], cwd=folder, capture_output=True, text=True
     )
     assert done.returncode == 0, done.stdout[-5000:]
 
 
+@pytest.fixture
+def _of_the_copy_alone(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A copy's tests import the copy, wherever this run has its modules from."""
+    monkeypatch.delenv("PYTHONPATH", raising=False)
+
+
+@pytest.mark.usefixtures("_of_the_copy_alone")
 def test_the_core_passes_its_tests_without_any_kit(tmp_path: Path) -> None:
-    passes(without(tmp_path, KITS), "tests")
+    copy = without(tmp_path, KITS)
+    passes(str(copy / ".venv/bin/python"), copy, "tests")
 
 
+@pytest.mark.usefixtures("_of_the_copy_alone")
 @pytest.mark.parametrize("kit", KITS)
 def test_the_core_does_not_notice_that_one_is_gone(kit: str, tmp_path: Path) -> None:
     copy = without(tmp_path, needing(kit))
     doctor = subprocess.run([copy / ".venv/bin/seatrial", "doctor"], capture_output=True, text=True)
     assert kit not in doctor.stdout.partition("kits:")[2].partition("\n")[0]
-    passes(copy, *NOTICING)
+    passes(str(copy / ".venv/bin/python"), copy, *NOTICING)
 
 
 @pytest.mark.parametrize("kit", KITS)
 def test_a_kits_own_tests_pass_alone(kit: str) -> None:
     if (ROOT / "tests/kits" / kit).is_dir():
-        passes(ROOT, f"tests/kits/{kit}")
+        passes(sys.executable, ROOT, f"tests/kits/{kit}")

@@ -50,15 +50,22 @@ def test_each_part_meets_the_waves_where_it_is(place, carried):
 
 
 @pytest.mark.parametrize("place", [(0, 0, 2.0), (-12.5, 0, 0.5), (6, -3, -1.0)])
-def test_thrust_fades_in_the_waves_at_the_propulsor(place):
-    # A tunnel loses (u / u_0)^2 of its thrust, u along the bow.
+@pytest.mark.parametrize("slot", [1, 3])
+def test_thrust_fades_in_the_waves_at_the_propulsor(place, slot):
+    # A tunnel loses (u / u_0)^2 of its thrust, u along the bow. Those before it are elsewhere.
     part = craft(
-        propulsors="tunnel",
-        propulsor_position_1=place,
-        propulsor_axis_1=(0, 1, 0),
-        propulsor_thrust_1=(30.0, 30.0),
-        propulsor_fading_speed_1=2.0,
-        propulsor_order=[1.0] + [0.0] * 7,
+        propulsors=" ".join(["tunnel"] * slot),
+        **{
+            f"propulsor_{key}_{k}": value
+            for k in range(1, slot + 1)
+            for key, value in {
+                "position": place if k == slot else (3.0 * k, 0, 4.0),
+                "axis": (0, 1, 0),
+                "thrust": (30.0, 30.0),
+                "fading_speed": 2.0,
+            }.items()
+        },
+        propulsor_order=[float(k == slot) for k in range(1, 9)],
         position_start=AT,
         attitude_start=(0, 0, TURNED),
         sea_spectrum="regular",
@@ -68,7 +75,7 @@ def test_thrust_fades_in_the_waves_at_the_propulsor(place):
     part.initialise()
     x, _, z = ahead(place)
     u = math.cos(TURNED) * airy(x, z)[0]
-    assert part.get("propulsor_force")[0] == pytest.approx(30 * (1 - (u / 2) ** 2), rel=1e-9)
+    assert part.get("propulsor_force")[slot - 1] == pytest.approx(30 * (1 - (u / 2) ** 2), rel=1e-9)
 
 
 def test_a_craft_on_long_waves_feels_no_difference():

@@ -91,13 +91,13 @@ class Windows(DeckEstimate, Component):
 
     def predicted(self, t: float) -> list[float]:
         """Return heave upwards, m, and slopes to north and east at ``t``."""
-        newest = self._grid - 1
-        steps = t / self.sample_step() - newest
+        newest, step = self._grid - 1, self.sample_step()
+        steps = t / step - newest
         if newest != self._future_of:
             self._future_of = newest
             self._future = []
             if self.predictor == "autoregressive":
-                self._fit(t)
+                self._fit(newest * step)
         if self.predictor == "harmonic":
             self._foresee()
         while len(self._future) < min(steps + 1.0, prediction.FARTHEST):
@@ -111,15 +111,15 @@ class Windows(DeckEstimate, Component):
             for row in prediction.harmonic(samples, prediction.FARTHEST).tolist():
                 self._future.append(row)
 
-    def _fit(self, t: float) -> None:
-        """Begin a prediction at the newest sample, with new coefficients where they are old."""
+    def _fit(self, newest: float) -> None:
+        """Begin a prediction at ``newest``, s; coefficients older than T_p / 4 are fitted again."""
         self._means = [prediction.mean(self._samples, column) for column in range(3)]
         self._past = [
             [self._samples[-1 - i][column] - mean for i in range(prediction.ORDER)]
             for column, mean in enumerate(self._means)
         ]
-        if t - self._fitted_at > 0.25 * self.wave_period:
-            self._fitted_at = t
+        if newest - self._fitted_at > 0.25 * self.wave_period:
+            self._fitted_at = newest
             self._fitted = [
                 prediction.coefficients(self._samples, column, mean)
                 for column, mean in enumerate(self._means)

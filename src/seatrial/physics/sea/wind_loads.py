@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
 
 import numpy as np
 
 from ...errors import InputError, unknown
-from .isherwood import TABLE
 from .numbers import Array, require_positive
+
+DATA_FILES = ("isherwood.csv",)
 
 AIR_DENSITY = 1.225
 """kg/m3"""
@@ -91,8 +94,9 @@ class Isherwood:
         """Return C_X, C_Y, C_K, C_N at the angle gamma, rad."""
         turned = math.remainder(gamma, math.tau)
         row, share = divmod(abs(math.degrees(turned)) / 10.0, 1.0)
-        above = TABLE[min(int(row) + 1, 18)]
-        a, b, c = np.split((1.0 - share) * TABLE[int(row)] + share * above, [7, 14])
+        table = _isherwood()
+        above = table[min(int(row) + 1, 18)]
+        a, b, c = np.split((1.0 - share) * table[int(row)] + share * above, [7, 14])
         ship, length = self.shape, self.shape.length
         arguments = np.array(
             [
@@ -113,6 +117,13 @@ class Isherwood:
                 side * (c @ arguments),
             ]
         )
+
+
+@cache
+def _isherwood() -> Array:
+    """Return A0..A6, B0..B6, C0..C5 of [Isherwood1972], in rows every 10 degrees from ahead."""
+    path = Path(__file__).with_name(DATA_FILES[0])
+    return np.loadtxt(path, delimiter=",", skiprows=1)[:, 1:]
 
 
 @dataclass(frozen=True)
