@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 
 from seatrial.control.deck_landing import laws, prediction, tracking
+from seatrial.control.deck_landing.landing_control import DeckLandingControl
 from seatrial.control.multirotor_attitude import MultirotorAttitude
-from seatrial.physics.environment.wave_follower import drawn, period_of
+from seatrial.physics.environment.wave_follower import drawn, moved, period_of
 
 HERE = Path(__file__).parents[1] / "reference" / "drone"
 SIZES = {"hydrone": ((1.168, 0.517, 0.043), 0.2), "wamv": ((4.05, 2.44, 0.15), 1.0)}
@@ -131,7 +132,9 @@ def errors_of(predict, deck, height):
         raft = drawn(size, height, period, draw.uniform(0, math.pi), pad, draw)
         rows = []
         for k in range(230):
-            (heave, north, east, _, _), _ = raft.moved(k * period / prediction.PER_PERIOD)
+            (heave, north, east, _, _), _ = moved(
+                raft.components, k * period / prediction.PER_PERIOD
+            )
             up = pad * math.cos(math.atan(north)) * math.cos(math.atan(east))
             rows.append([heave + up, north, east])
         true = np.array(rows)
@@ -145,7 +148,29 @@ def errors_of(predict, deck, height):
 
 
 def ar(samples, steps):
-    return prediction.autoregressive(samples, prediction.coefficients(samples), steps)
+    """Return what the autopilot predicts from the samples, one of each second, the last at 0 s."""
+    control = DeckLandingControl("landing")
+    control.set("wave_period", prediction.PER_PERIOD)
+    control.reset_estimate(0.0)
+    control.reset_windows(0.0)
+    control._samples, control._grid = samples.tolist(), 1
+    return np.array([control.predicted(float(k)) for k in range(1, steps + 1)])
+
+
+def test_coefficients_are_those_of_a_least_squares_fit():
+    t, draw = np.arange(120) * 2 * math.pi / prediction.PER_PERIOD, np.random.default_rng(1)
+    y = np.column_stack([np.sin(t) + 0.4 * np.sin(1.7 * t + 1.0), 0.1 * np.cos(2.1 * t)])
+    y += draw.normal(0.0, 0.01, y.shape)
+    order = prediction.ORDER
+    for column in range(2):
+        about = y[:, column] - y[:, column].mean()
+        past = np.column_stack([about[order - i : len(y) - i] for i in range(1, order + 1)])
+        normal = past.T @ past
+        normal += 1e-3 * np.trace(normal) / order * np.eye(order)
+        expected = np.linalg.solve(normal, past.T @ about[order:])
+        mean = prediction.mean(y, column)
+        found = prediction.coefficients(y, column, mean)
+        assert found == pytest.approx(expected, abs=1e-10)
 
 
 @pytest.mark.slow

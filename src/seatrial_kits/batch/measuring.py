@@ -19,6 +19,7 @@ from seatrial.trial.criteria.criteria import Criterion
 from seatrial.trial.criteria.formulas import Formula
 from seatrial.trial.criteria.predicates import Record
 from seatrial.trial.criteria.robustness import Evaluation
+from seatrial.trial.files.naming import by_path
 from seatrial.trial.files.surroundings import GROUPS
 from seatrial.trial.files.trial import Trial
 from seatrial.trial.running.checks import check_criteria
@@ -151,7 +152,7 @@ def _program(shared: str, values: Mapping[str, Any], trial: Trial) -> _Program |
 def _made(trial: Trial, values: Mapping[str, Any]) -> _Program:
     batch = Batch(trial, 1)
     try:
-        units = check_criteria(trial, batch.system)
+        units = check_criteria(by_path(trial, batch.system), batch.system)
         built_in = frozenset(key for key in values if batch.is_built_in(key))
     except BaseException:
         batch.close()
@@ -160,6 +161,7 @@ def _made(trial: Trial, values: Mapping[str, Any]) -> _Program:
 
 
 def _run(trial: Trial, program: _Program, hooks: Hooks) -> Measured | None:
+    trial = by_path(trial, program.batch.system)
     names = watched_signals(trial)
     batch, steps, seed = program.batch, trial.steps, trial.file.seed
     ends = _Ends(trial, names, program.units)

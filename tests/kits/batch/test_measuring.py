@@ -110,6 +110,16 @@ def test_each_case_has_its_own_sea(monkeypatch: pytest.MonkeyPatch, programs: An
     assert len(programs) == 1
 
 
+def test_a_signal_may_have_the_name_that_a_rig_inside_shows(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    trial = load_trial("hydrone-landing-waves", changes={"stop": "1 s"}, origin="test")
+    case = replace(trial, figures=("vehicle.motion.position.x",))
+    found = measuring.measured(case, Hooks())
+    assert found is not None
+    assert same(found, singly(case, monkeypatch))
+
+
 @pytest.mark.parametrize(
     "changes",
     [

@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import math
-from typing import Any, ClassVar
-
-import numpy as np
+from collections.abc import Sequence
+from typing import ClassVar
 
 from ...model.component import Component, Input, Parameter, terminal
 from ...model.waypoints import NED
-from ...physics.sea.numbers import Array
-from . import tracking
+from . import prediction, tracking
 from .prediction import PER_PERIOD, WINDOW
 
 _EULER = ("phi", "theta", "psi")
@@ -69,47 +67,50 @@ class DeckEstimate(Component):
 
     def reset_estimate(self, t: float) -> None:
         """Know nothing of the deck."""
-        self._x: Any = []
-        self._P: Any = []
+        self._known = False
+        self._x, self._P = tracking.first([0.0, 0.0, 0.0])
         self._at = t
         self._seen, self._sights, self._reports = -math.inf, 0, 0
         self._own: list[list[float]] = []
         self._read = t
-        self._slopes: list[float] = [0.0] * 6
+        self._slopes = [0.0] * 6
         self._slopes_at = -math.inf
         self._samples: list[list[float]] = []
         self._grid = 0
-        self._hold: list[float] = []
 
     def observe(self, t: float) -> None:
-        """Keep the drone's own place, and take in what is new."""
+        """Keep the drone's own place, and take in what is new, the older first."""
         self._own.append([t, *self.position])
         while self._own[0][0] < t - _KEPT:
             self._own.pop(0)
         if t < self._read - 1e-9:
             return
         self._read += self.reading_period
-        news: list[tuple[float, int, Any]] = []
-        if self.sight_valid and self.sight_count != self._sights:
-            self._sights = self.sight_count
-            news.append((self.exposed, 0, np.add(self.offset, self._was(self.exposed))))
-            self._seen = max(self._seen, self.exposed)
-        if self.report_valid and self.report_count != self._reports:
+        sighted = self.sight_valid and self.sight_count != self._sights
+        told = self.report_valid and self.report_count != self._reports
+        if told:
             self._reports = self.report_count
-            news.append((self.reported, 1, np.array(self.pad_velocity)))
             self._slopes, self._slopes_at = [*self.deck_attitude, *self.deck_rates], self.reported
-        for at, row, value in sorted(news, key=lambda each: each[:2]):
-            self._take(at, row, value)
+        earlier = told and self.reported < self.exposed
+        if earlier:
+            self._take(self.reported, 1, self.pad_velocity)
+        if sighted:
+            self._sights = self.sight_count
+            self._seen = max(self._seen, self.exposed)
+            own = self._was(self.exposed)
+            self._take(self.exposed, 0, [p + o for p, o in zip(own, self.offset, strict=True)])
+        if told and not earlier:
+            self._take(self.reported, 1, self.pad_velocity)
 
     def lost_for(self, t: float) -> float:
         """Return how long the mark has not been seen, s; infinite before it was."""
         return t - self._seen
 
-    def deck_at(self, t: float) -> Array:
+    def deck_at(self, t: float) -> tracking.Rows:
         """Return position, velocity, and acceleration of the pad at ``t``, (3, 3)."""
-        if not len(self._x):
+        if not self._known:
             below = [self.position[0], self.position[1], self.position[2] + 1e3]
-            return np.array([below, [0.0] * 3, [0.0] * 3])
+            return [below, [0.0, 0.0, 0.0], [0.0, 0.0, 0.0]]
         omega = 1.15 * 2.0 * math.pi / max(self.wave_period, 0.1)
         return tracking.ahead(self._x, min(max(t - self._at, 0.0), _FARTHEST), omega)
 
@@ -119,33 +120,34 @@ class DeckEstimate(Component):
 
     def mean_down(self) -> float | None:
         """Return the pad's mean place down, m, None before there is one."""
-        if not len(self._x):
+        if not self._known:
             return None
         if len(self._samples) < PER_PERIOD:
-            return float(self._x[0][2])
-        return -float(np.mean([row[0] for row in self._samples]))
+            return self._x[0][2]
+        return -prediction.mean(self._samples, 0)
 
     # ------------------------------------------------------------------ inside
 
     def _was(self, at: float) -> list[float]:
         """Return where the drone was, linear between two instants."""
-        later = next((i for i, row in enumerate(self._own) if row[0] >= at), len(self._own) - 1)
+        later = 0
+        while later < len(self._own) - 1 and self._own[later][0] < at:
+            later += 1
         b, a = self._own[later], self._own[max(later - 1, 0)]
         share = (at - a[0]) / (b[0] - a[0]) if b[0] > a[0] else 1.0
         return [p + share * (q - p) for p, q in zip(a[1:], b[1:], strict=True)]
 
-    def _take(self, at: float, row: int, value: Array) -> None:
-        if not len(self._x):
+    def _take(self, at: float, row: int, value: Sequence[float]) -> None:
+        if not self._known:
             if row == 0:
                 self._x, self._P = tracking.first(value)
-                self._at = at
+                self._at, self._known = at, True
             return
         if at < self._at - 1e-6:
             return
-        self._x, self._P = tracking.moved_on(self._x, self._P, max(at - self._at, 0.0), _JERK)
+        x, P = tracking.moved_on(self._x, self._P, max(at - self._at, 0.0), _JERK)
         self._at = max(at, self._at)
-        noise = _SPEED if row else _SIGHT
-        self._x, self._P = tracking.corrected(self._x, self._P, row, value, noise)
+        self._x, self._P = tracking.corrected(x, P, row, value, _SPEED if row else _SIGHT)
         self._sample()
 
     def _sample(self) -> None:
@@ -157,13 +159,14 @@ class DeckEstimate(Component):
             back = self._grid * step - self._at
             down = self._x[0][2] + self._x[1][2] * back + self._x[2][2] * back * back / 2.0
             north, east = self._tilt_at(self._grid * step)
-            self._samples.append([-float(down), north, east])
+            self._samples.append([-down, north, east])
             self._grid += 1
-        del self._samples[:-WINDOW]
+            if len(self._samples) > WINDOW:
+                self._samples.pop(0)
 
     def sample_step(self) -> float:
         """Return the time between two samples, s."""
-        return max(float(self.wave_period), 0.1) / PER_PERIOD
+        return float(max(self.wave_period, 0.1)) / PER_PERIOD
 
     def _tilt_at(self, t: float) -> tuple[float, float]:
         """Return the slopes to north and east at ``t``, by the last report and its rates."""

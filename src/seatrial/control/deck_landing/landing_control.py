@@ -10,9 +10,9 @@ from ...model.component import Input, Output, Parameter, terminal
 from ...model.sampled import Sampled
 from ...model.waypoints import NED
 from ...physics.craft.kinematics import to_ned
-from ...physics.sea.numbers import Array
 from . import laws
 from .deck_estimate import DeckEstimate
+from .tracking import Rows
 from .windows import Windows
 
 _EULER = ("phi", "theta", "psi")
@@ -82,7 +82,7 @@ class DeckLandingControl(Windows, DeckEstimate, Sampled):
         """Start in the air, or with the motors off on the deck."""
         self._mode = OFF
         self._since = t
-        self._home: list[float] = []
+        self._home = self._hold = [0.0] * 4
         self._integral = (0.0, 0.0)
         self._loaded = -1.0
         self._around = 0.0
@@ -104,15 +104,15 @@ class DeckLandingControl(Windows, DeckEstimate, Sampled):
         """Take in what sensors have, go on to the state that follows, compute the orders."""
         self.observe(t)
         deck = self.deck_at(t)
-        own = [float(v) for v in to_ned(self.attitude, self.velocity)]
-        if not self._home:
-            self._home = [*self.position, self.attitude[2]]
+        own = to_ned(self.attitude, self.velocity)
+        if self._mode == OFF:
+            self._home = self._hold = [*self.position, self.attitude[2]]
             self._change(TAKE_OFF if self.starts_from == "deck" else self._after_start(), t)
-        height = float(deck[0][2]) - self.position[2] - self.feet[2]
-        error = [float(deck[0][i]) - self.position[i] for i in range(2)]
+        height = deck[0][2] - self.position[2] - self.feet[2]
+        error = [deck[0][i] - self.position[i] for i in range(2)]
         off = math.hypot(*error)
         self._next_mode(t, height, off)
-        shown = [height, off] if len(self._x) else [0.0, 0.0]
+        shown = [height, off] if self._known else [0.0, 0.0]
         if self._mode == LANDED:
             self._held = [0.0, [0.0, 0.0, self._heading()], False, *shown]
             return
@@ -147,7 +147,11 @@ class DeckLandingControl(Windows, DeckEstimate, Sampled):
                 self._change(WAIT if self.control == "predictive" else DESCEND, t)
         elif mode == WAIT and lost > 1.0:
             self._change(TRACK, t)
-        elif mode == WAIT and self.finds_window(t, t - self._since, height):
+        elif (
+            self.control == "predictive"
+            and mode == WAIT
+            and self.finds_window(t, t - self._since, height)
+        ):
             self._change(DESCEND, t)
         elif mode == DESCEND and self._must_go_around(t, height, off, lost):
             self._around += 1.0
@@ -184,22 +188,21 @@ class DeckLandingControl(Windows, DeckEstimate, Sampled):
 
     def _heading(self) -> float:
         """Return the heading to hold: the craft's as last reported, before that its own."""
-        return self.deck_heading() if self._reports else float(self._home[3])
+        return self.deck_heading() if self._reports else self._home[3]
 
     def _aside(
-        self, t: float, deck: Array, own: Sequence[float], error: Sequence[float], height: float
+        self, t: float, deck: Rows, own: Sequence[float], error: Sequence[float], height: float
     ) -> Sequence[float]:
         follows = self._mode in (TRACK, WAIT, DESCEND) or (
             self._mode == GO_AROUND and self.lost_for(t) < 1.0
         )
         if follows and self.lost_for(t) < 1.0:
             self._integral = laws.integrated(self._integral, error, self.period)
-            slower = [float(deck[1][i]) - own[i] for i in range(2)]
+            slower = [deck[1][i] - own[i] for i in range(2)]
             ahead = self.deck_at(t + 0.2)[2]
-            pushed = [float(ahead[0]), float(ahead[1])]
-            self._hold = [self.position[0], self.position[1]]
-            return laws.below(error, slower, self._integral, pushed, height)
-        goal = self._goal() if self._mode == TRANSIT else self._place_to_hold()
+            self._hold = [*self.position, self._home[3]]
+            return laws.below(error, slower, self._integral, ahead[:2], height)
+        goal = self._goal() if self._mode == TRANSIT else self._hold[:2]
         away = [g - p for g, p in zip(goal, self.position, strict=False)]
         length = math.hypot(*away)
         error = [a * min(1.0, 2.0 / length) if length else 0.0 for a in away]
@@ -207,10 +210,7 @@ class DeckLandingControl(Windows, DeckEstimate, Sampled):
             self._integral = laws.integrated(self._integral, error, self.period)
         return laws.below(error, [-v for v in own[:2]], self._integral, (0.0, 0.0), 1e3)
 
-    def _place_to_hold(self) -> Sequence[float]:
-        return self._hold or self._home[:2]
-
-    def _down(self, t: float, deck: Array, own: Sequence[float], height: float) -> float:
+    def _down(self, t: float, deck: Rows, own: Sequence[float], height: float) -> float:
         if self._mode != DESCEND:
             mean = self.mean_down()
             over = self._home[2] + self.feet[2] if self.starts_from == "deck" else None
@@ -224,5 +224,5 @@ class DeckLandingControl(Windows, DeckEstimate, Sampled):
         left = self._target - t
         if self.control == "predictive" and left > 0.15 * self.wave_period:
             return self.meets(t, self.position[2] + self.feet[2], own[2], left)
-        wanted = float(deck[1][2]) + laws.sinking(height)
-        return laws.down(wanted, own[2], float(deck[2][2]))
+        wanted = deck[1][2] + laws.sinking(height)
+        return laws.down(wanted, own[2], deck[2][2])

@@ -6,6 +6,8 @@ the first one sample after the last that is known.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from ...physics.sea.numbers import Array
@@ -14,6 +16,8 @@ ORDER = 16
 WINDOW = 120
 PER_PERIOD = 14
 """Samples in a peak period."""
+FARTHEST = 4 * PER_PERIOD
+"""No prediction goes farther than this, in samples."""
 _RIDGE = 1e-3
 _BANK = np.linspace(0.4, 4.0, 73)
 """Frequencies of the harmonic model over that of the peak."""
@@ -24,36 +28,78 @@ _MISFIT = np.array([1e-2, 3e-3, 3e-3])
 _GAMMA = 3.3
 
 
-def coefficients(samples: Array) -> Array:
-    """Return those of AR(16), (3, 16), newest sample first, by least squares with a ridge.
+Samples = Sequence[Sequence[float]]
 
-    y_k = sum_i c_i y_(k-i) about the mean of the samples; the ridge is 1e-3 of the mean diagonal
-    of the normal equations. Fewer than 2 ORDER samples give none: all coefficients 0.
+
+def mean(samples: Samples, column: int) -> float:
+    """Return the mean of a column."""
+    total = 0.0
+    for row in samples:
+        total += row[column]
+    return total / len(samples)
+
+
+def coefficients(samples: Samples, column: int, mean: float) -> list[float]:
+    """Return those of AR(16) for a column, newest sample first, by least squares with a ridge.
+
+    y_k = sum_i c_i y_(k-i) about the ``mean``, of 17 samples or more; the ridge is 1e-3 of the
+    mean diagonal of the normal equations. The sums of products y_(k-i) y_(k-j) are made for i = 0;
+    those of i + 1 and j + 1 have one product more and one less than those of i and j.
     """
-    count = len(samples)
-    fitted = np.zeros((samples.shape[1], ORDER))
-    if count < 2 * ORDER:
-        return fitted
-    about = samples - samples.mean(axis=0)
-    places = np.arange(ORDER, count)[:, None] - np.arange(1, ORDER + 1)
-    for axis in range(samples.shape[1]):
-        past, now = about[places, axis], about[ORDER:, axis]
-        normal = past.T @ past
-        ridge = _RIDGE * max(float(np.trace(normal)) / ORDER, 1e-12)
-        fitted[axis] = np.linalg.solve(normal + ridge * np.eye(ORDER), past.T @ now)
-    return fitted
+    recent = [0.0] * (ORDER + 1)
+    products = [0.0] * (ORDER + 1)
+    for place in range(len(samples)):
+        recent = [samples[place][column] - mean, *recent[:-1]]
+        if place >= ORDER:
+            products = [p + recent[0] * y for p, y in zip(products, recent, strict=True)]
+    oldest = [samples[ORDER - 1 - i][column] - mean for i in range(ORDER)]
+    return _fitted(products, oldest, recent)
 
 
-def autoregressive(samples: Array, fitted: Array, steps: int) -> Array:
-    """Return the next ``steps`` samples by `coefficients`."""
-    mean = samples.mean(axis=0)
-    past = (samples[-ORDER:] - mean)[::-1].T.copy()
-    found = np.empty((steps, samples.shape[1]))
-    for k in range(steps):
-        new = np.einsum("ij,ij->i", fitted, past)
-        past[:, 1:] = past[:, :-1].copy()
-        past[:, 0] = new
-        found[k] = new + mean
+def _fitted(
+    products: Sequence[float], oldest: Sequence[float], newest: Sequence[float]
+) -> list[float]:
+    """Return the coefficients for the sums of products, and the samples at both ends."""
+    rows = [[*products]]
+    for i in range(ORDER):
+        later = [
+            p + oldest[i] * oldest[j] - newest[i] * newest[j] for j, p in enumerate(rows[i][:ORDER])
+        ]
+        rows.append([products[i + 1], *later])
+    trace = 0.0
+    for i in range(ORDER):
+        trace += rows[i + 1][i + 1]
+    ridge = _RIDGE * max(trace / ORDER, 1e-12)
+    normal = [
+        [p + ridge if i == j else p for j, p in enumerate(row[1:])]
+        for i, row in enumerate(rows[1:])
+    ]
+    return _solved(normal, products[1:])
+
+
+def _solved(matrix: Sequence[Sequence[float]], right: Sequence[float]) -> list[float]:
+    """Return x of A x = b by elimination without exchanges, for a positive definite A."""
+    rows = [[*row, own] for row, own in zip(matrix, right, strict=True)]
+    for i in range(ORDER):
+        # A row that is eliminated loses its first element: row i begins with its pivot.
+        for k in range(i + 1, ORDER):
+            share = rows[k][0] / rows[i][0]
+            rows[k] = [p - share * q for p, q in zip(rows[k][1:], rows[i][1:], strict=True)]
+    found: list[float] = []
+    for i in range(ORDER):
+        row = rows[ORDER - 1 - i]
+        own = row[-1]
+        for p, x in zip(row[1:-1], found, strict=True):
+            own = own - p * x
+        found = [own / row[0], *found]
+    return found
+
+
+def step(fitted: Sequence[float], past: Sequence[float]) -> float:
+    """Return the sample that follows ``past``, newest first, by `coefficients`; about the mean."""
+    found = 0.0
+    for c, y in zip(fitted, past, strict=True):
+        found += c * y
     return found
 
 
@@ -88,9 +134,11 @@ def _expected(power: int) -> Array:
     return np.asarray(density / density.sum())
 
 
-def at(prediction: Array, steps: float) -> Array:
+def at(prediction: Samples, steps: float) -> list[float]:
     """Return a prediction ``steps`` samples ahead (1 the first), linear in between."""
     place = min(max(steps - 1.0, 0.0), len(prediction) - 1.0)
     low = int(place)
     high = min(low + 1, len(prediction) - 1)
-    return np.asarray(prediction[low] + (place - low) * (prediction[high] - prediction[low]))
+    return [
+        p + (place - low) * (q - p) for p, q in zip(prediction[low], prediction[high], strict=True)
+    ]

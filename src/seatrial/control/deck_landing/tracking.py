@@ -6,47 +6,82 @@ axes have the same noise, and so one covariance (3, 3). Metres and seconds, {n}.
 
 from __future__ import annotations
 
-import numpy as np
+from collections.abc import Sequence
 
-from ...physics.sea.numbers import Array
-
+Rows = list[list[float]]
 _UNKNOWN = (1e2, 1e1, 1e0)
 """Variances of a pad that nothing is known of but its first position."""
 
 
-def first(position: Array) -> tuple[Array, Array]:
+def first(position: Sequence[float]) -> tuple[Rows, Rows]:
     """Return the state of a pad seen for the first time, and its covariance."""
-    return np.array([position, np.zeros(3), np.zeros(3)]), np.diag(_UNKNOWN)
+    a, b, c = _UNKNOWN
+    return (
+        [[position[0], position[1], position[2]], [0.0, 0.0, 0.0], [0.0, 0.0, 0.0]],
+        [[a, 0.0, 0.0], [0.0, b, 0.0], [0.0, 0.0, c]],
+    )
 
 
-def moved_on(x: Array, P: Array, h: float, jerk: float) -> tuple[Array, Array]:
+def moved_on(x: Rows, P: Rows, h: float, jerk: float) -> tuple[Rows, Rows]:
     """Return state and covariance ``h`` s later; ``jerk`` is its spectral density, m2/s5."""
-    F = np.array([[1.0, h, 0.5 * h * h], [0.0, 1.0, h], [0.0, 0.0, 1.0]])
-    Q = jerk * np.array(
-        [
-            [h**5 / 20.0, h**4 / 8.0, h**3 / 6.0],
-            [h**4 / 8.0, h**3 / 3.0, h**2 / 2.0],
-            [h**3 / 6.0, h**2 / 2.0, h],
-        ]
-    )
-    return F @ x, F @ P @ F.T + Q
+    noise = [
+        [h**5 / 20.0, h**4 / 8.0, h**3 / 6.0],
+        [h**4 / 8.0, h**3 / 3.0, h**2 / 2.0],
+        [h**3 / 6.0, h**2 / 2.0, h],
+    ]
+    # F P F^T, with F^T from the right as F on the columns: P is symmetric.
+    grown = _shifted(_columns(_shifted(P, h)), h)
+    return _shifted(x, h), [
+        [p + jerk * q for p, q in zip(row, own, strict=True)]
+        for row, own in zip(grown, noise, strict=True)
+    ]
 
 
-def corrected(x: Array, P: Array, row: int, value: Array, noise: float) -> tuple[Array, Array]:
+def corrected(
+    x: Rows, P: Rows, row: int, value: Sequence[float], noise: float
+) -> tuple[Rows, Rows]:
     """Return both after a measurement of a row (0 position, 1 velocity) with ``noise``, 1 sigma."""
-    gain = P[:, row] / (P[row, row] + noise * noise)
-    x = x + np.outer(gain, value - x[row])
-    P = P - np.outer(gain, P[row])
-    return x, 0.5 * (P + P.T)
-
-
-def ahead(x: Array, h: float, omega: float) -> Array:
-    """Return the state ``h`` s later with the jerk of an oscillation, -omega^2 v."""
-    jerk = -(omega**2) * x[1]
-    return np.array(
+    variance = P[row][row] + noise * noise
+    gain = [each[row] / variance for each in P]
+    missed = [v - own for v, own in zip(value, x[row], strict=True)]
+    less = [
+        [p - g * q for p, q in zip(each, P[row], strict=True)]
+        for g, each in zip(gain, P, strict=True)
+    ]
+    return (
         [
-            x[0] + x[1] * h + x[2] * h**2 / 2.0 + jerk * h**3 / 6.0,
-            x[1] + x[2] * h + jerk * h**2 / 2.0,
-            x[2] + jerk * h,
-        ]
+            [own + g * m for own, m in zip(each, missed, strict=True)]
+            for g, each in zip(gain, x, strict=True)
+        ],
+        [
+            [0.5 * (a + b) for a, b in zip(one, other, strict=True)]
+            for one, other in zip(less, _columns(less), strict=True)
+        ],
     )
+
+
+def ahead(x: Rows, h: float, omega: float) -> Rows:
+    """Return the state ``h`` s later with the jerk of an oscillation, -omega^2 v."""
+    jerk = [-(omega**2) * v for v in x[1]]
+    third, second = h**3 / 6.0, h**2 / 2.0
+    place, speed, push = _shifted(x, h)
+    return [
+        [p + j * third for p, j in zip(place, jerk, strict=True)],
+        [v + j * second for v, j in zip(speed, jerk, strict=True)],
+        [a + j * h for a, j in zip(push, jerk, strict=True)],
+    ]
+
+
+def _shifted(rows: Rows, h: float) -> Rows:
+    """Return F x, F = ((1, h, h^2 / 2), (0, 1, h), (0, 0, 1))."""
+    place, speed, push = rows
+    half = h * h / 2.0
+    return [
+        [p + h * v + half * a for p, v, a in zip(place, speed, push, strict=True)],
+        [v + h * a for v, a in zip(speed, push, strict=True)],
+        push,
+    ]
+
+
+def _columns(rows: Rows) -> Rows:
+    return [list(column) for column in zip(*rows, strict=True)]

@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from pathlib import Path
 from typing import ClassVar
-
-import numpy as np
 
 from ...model.component import Component, Noise, Output, Parameter, terminal
 from ...model.waypoints import NED
 from ..craft.kinematics import cross, to_body, to_ned
-from .wave_follower import drawn, period_of, read
+from .wave_follower import Follower, drawn, moved, period_of, read
 
 
 class PrescribedDeck(Noise, Component):
@@ -32,7 +31,7 @@ class PrescribedDeck(Noise, Component):
     Not modelled: inertia of the raft, damping, drift, yaw, loads on the deck.
     """
 
-    transient = Component.transient | {"_raft"}
+    transient = Component.transient | {"_waves"}
 
     size = Parameter((1.168, 0.517, 0.043), "m", "length, breadth, draught", axes="xyz", min=0.0)
     pad_height = Parameter(0.2, "m", "height of the pad over the origin")
@@ -55,21 +54,26 @@ class PrescribedDeck(Noise, Component):
 
     def start(self, t: float) -> None:
         """Draw the sea or read the file; raises InputError for a file that has none."""
-        if self.file:
-            self._raft = read(Path(self.file), f"{self.name}.file")
-            return
+        raft = read(Path(self.file), f"{self.name}.file") if self.file else self._drawn()
+        self._waves: list[Sequence[float]] = []
+        for each in raft.components:
+            self._waves.append(each)
+        self._period, self._height = raft.period, raft.pad_height
+
+    def _drawn(self) -> Follower:
         draw = self.generator(0)
-        direction = math.pi * float(draw.random())
+        direction = math.pi * draw.random()
         if self.direction_by == "value":
             direction = self.wave_direction
         period = self.wave_period or period_of(self.wave_height) or 1.0
-        self._raft = drawn(self.size, self.wave_height, period, direction, self.pad_height, draw)
+        return drawn(self.size, self.wave_height, period, direction, self.pad_height, draw)
 
     def outputs(self, t: float) -> None:
         """Publish the motion at ``t``."""
-        raft = self._raft
-        (heave, s_n, s_e, x_n, x_e), (d_heave, d_sn, d_se, d_xn, d_xe) = raft.moved(t)
-        theta, phi, h = math.atan(s_n), -math.atan(s_e), raft.pad_height
+        values, changes = moved(self._waves, t)
+        heave, s_n, s_e, x_n, x_e = values
+        d_heave, d_sn, d_se, d_xn, d_xe = changes
+        theta, phi, h = math.atan(s_n), -math.atan(s_e), self._height
         d_theta, d_phi = d_sn / (1.0 + s_n * s_n), -d_se / (1.0 + s_e * s_e)
         sp, cp, st, ct = math.sin(phi), math.cos(phi), math.sin(theta), math.cos(theta)
         pad = (x_n - h * st, x_e + h * sp, -heave - h * ct * cp)
@@ -80,7 +84,8 @@ class PrescribedDeck(Noise, Component):
         )
         attitude, rates = (phi, theta, 0.0), (d_phi, cp * d_theta, -sp * d_theta)
         up = (0.0, 0.0, -h)
-        self.position = np.subtract(pad, to_ned(attitude, up)).tolist()
-        self.velocity = np.subtract(to_body(attitude, speed), cross(rates, up)).tolist()
+        above, turned, own = to_ned(attitude, up), cross(rates, up), to_body(attitude, speed)
+        self.position = [p - a for p, a in zip(pad, above, strict=True)]
+        self.velocity = [v - w for v, w in zip(own, turned, strict=True)]
         self.attitude, self.rates = attitude, rates
-        self.pad_position, self.pad_velocity, self.period = pad, speed, raft.period
+        self.pad_position, self.pad_velocity, self.period = pad, speed, self._period

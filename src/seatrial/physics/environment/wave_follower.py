@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import ast
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -12,12 +12,11 @@ from typing import Any
 import numpy as np
 
 from ...errors import InputError
-from ..sea.numbers import Array
-from ..sea.spectra import Jonswap
 
 STEEPNESS = 0.04
 """2 pi Hs / (g Tp^2) of a sea whose period is not given."""
 _GRAVITY = 9.81
+_GAMMA = 3.3
 _BINS = 60
 _LOWEST, _HIGHEST = 0.5, 4.0
 _LARGEST = 10_000_000
@@ -35,32 +34,33 @@ _KEYS = {
 
 @dataclass(frozen=True)
 class Follower:
-    """Components of the sea (rad/s, m, rad) and what one metre of each makes of the raft.
+    """Components of a raft's motion, peak period of the sea, s, and height of the pad, m.
 
-    heave, upwards, goes with cos(omega t + phase), the others with sin(omega t + phase): slopes to
-    north and east, and surge to north and east, which has the sign of the slope, as a raft
-    slides down the face of a wave.
+    A component has frequency omega, rad/s, amplitude, m, phase, rad, of a wave, and what one
+    metre of that wave makes of the raft: heave, upwards, with cos(omega t + phase), and with
+    sin(omega t + phase) slopes to north and east, 1/m, and surge to north and east, which has the
+    sign of the slope, as a raft slides down the face of a wave.
     """
 
-    omega: Array
-    amplitude: Array
-    phase: Array
-    heave: Array
-    slope_north: Array
-    slope_east: Array
-    surge_north: Array
-    surge_east: Array
+    components: Sequence[Sequence[float]]
     period: float
     pad_height: float
 
-    def moved(self, t: float) -> tuple[list[float], list[float]]:
-        """Return heave, slopes north and east, surges north and east at ``t``; their rates."""
-        angle = self.omega * t + self.phase
-        sin, cos = self.amplitude * np.sin(angle), self.amplitude * np.cos(angle)
-        along = self.slope_north, self.slope_east, self.surge_north, self.surge_east
-        values = [self.heave @ cos, *(row @ sin for row in along)]
-        rates = [-(self.heave * self.omega) @ sin, *((row * self.omega) @ cos for row in along)]
-        return [float(v) for v in values], [float(v) for v in rates]
+
+def moved(components: Iterable[Sequence[float]], t: float) -> tuple[list[float], list[float]]:
+    """Return heave, slopes north and east, surges north and east at ``t``; their rates."""
+    heave = north = east = ahead = aside = 0.0
+    d_heave = d_north = d_east = d_ahead = d_aside = 0.0
+    for omega, amplitude, phase, rises, tilts_n, tilts_e, goes_n, goes_e in components:
+        angle = omega * t + phase
+        sin, cos = amplitude * math.sin(angle), amplitude * math.cos(angle)
+        d_sin, d_cos = omega * cos, -omega * sin
+        heave, d_heave = heave + rises * cos, d_heave + rises * d_cos
+        north, d_north = north + tilts_n * sin, d_north + tilts_n * d_sin
+        east, d_east = east + tilts_e * sin, d_east + tilts_e * d_sin
+        ahead, d_ahead = ahead + goes_n * sin, d_ahead + goes_n * d_sin
+        aside, d_aside = aside + goes_e * sin, d_aside + goes_e * d_sin
+    return [heave, north, east, ahead, aside], [d_heave, d_north, d_east, d_ahead, d_aside]
 
 
 def period_of(height: float) -> float:
@@ -88,30 +88,59 @@ def drawn(
         slope north    exp(-k d) k cos M(X) S(Y),     east   exp(-k d) k sin S(X) M(Y)
         surge north    exp(-k d) cos S(X) S(Y),       east   exp(-k d) sin S(X) S(Y)
     """
-    if not height:
-        return _at_rest(period, pad)
-    peak = 2.0 * math.pi / period
-    edges = np.linspace(_LOWEST * peak, _HIGHEST * peak, _BINS + 1)
-    omega = edges[:-1] + draw.random(_BINS) * np.diff(edges)
-    density = Jonswap(height, period, 3.3).density(omega)
-    amplitude = np.sqrt(2.0 * density * np.diff(edges))
-    amplitude *= math.sqrt((height / 4.0) ** 2 / (0.5 * float(amplitude @ amplitude)))
+    width = (_HIGHEST - _LOWEST) / _BINS
+    shares = draw.random(_BINS).tolist()
+    ratios = [_LOWEST + width * (i + share) for i, share in enumerate(shares)]
+    spectrum = [_density(ratio) for ratio in ratios]
+    total = 0.0
+    for density in spectrum:
+        total += density
+    # The variance of the sum of the waves is (Hs / 4)^2.
+    variance = 2.0 * (height / 4.0) ** 2 / total
+    phases = draw.random(_BINS).tolist()
+    components = [
+        [
+            ratio * 2.0 * math.pi / period,
+            math.sqrt(variance * density),
+            2.0 * math.pi * phase,
+            *_response(size, direction, ratio * 2.0 * math.pi / period),
+        ]
+        for ratio, density, phase in zip(ratios, spectrum, phases, strict=True)
+    ]
+    return Follower(components, period, pad)
+
+
+def _density(ratio: float) -> float:
+    """Return JONSWAP's spectrum, gamma 3.3, but for a factor; ``ratio`` is omega over its peak."""
+    width = 0.07 if ratio <= 1.0 else 0.09
+    peaked = math.exp(-((ratio - 1.0) ** 2) / (2.0 * width**2))
+    return math.exp(-1.25 / ratio**4) * math.pow(_GAMMA, peaked) / ratio**5
+
+
+def _response(size: Sequence[float], direction: float, omega: float) -> list[float]:
+    """Return heave, slopes, and surges of the raft for a wave of one metre."""
     length, breadth, draught = size
     k, north, east = omega**2 / _GRAVITY, math.cos(direction), math.sin(direction)
     X, Y = 0.5 * k * length * north, 0.5 * k * breadth * east
-    decayed, mean = np.exp(-k * draught), _mean(X) * _mean(Y)
-    return Follower(
-        omega,
-        amplitude,
-        2.0 * math.pi * draw.random(_BINS),
-        decayed * mean,
+    decayed = math.exp(-k * draught)
+    mean = decayed * _mean(X) * _mean(Y)
+    return [
+        mean,
         decayed * k * north * _tilt(X) * _mean(Y),
         decayed * k * east * _mean(X) * _tilt(Y),
-        decayed * north * mean,
-        decayed * east * mean,
-        period,
-        pad,
-    )
+        north * mean,
+        east * mean,
+    ]
+
+
+def _mean(x: float) -> float:
+    return math.sin(x) / x if x else 1.0
+
+
+def _tilt(x: float) -> float:
+    if abs(x) < 1e-3:
+        return 1.0 - x * x / 10.0
+    return 3.0 * (math.sin(x) - x * math.cos(x)) / x**3
 
 
 def read(file: Path, called: str) -> Follower:
@@ -130,23 +159,7 @@ def read(file: Path, called: str) -> Follower:
     if period <= 0.0:
         raise InputError(f"{called}: {file}: 'Tp [s]' is {period!r}, above 0 is needed")
     pad = _number(content, "pad height [m]", called, file)
-    return Follower(**lists, period=period, pad_height=pad)
-
-
-def _at_rest(period: float, pad: float) -> Follower:
-    none = np.zeros(1)
-    return Follower(none, none, none, none, none, none, none, none, period, pad)
-
-
-def _mean(x: Array) -> Array:
-    return np.asarray(np.sinc(x / math.pi))
-
-
-def _tilt(x: Array) -> Array:
-    small = np.abs(x) < 1e-3
-    safe = np.where(small, 1.0, x)
-    exact = 3.0 * (np.sin(safe) - safe * np.cos(safe)) / safe**3
-    return np.where(small, 1.0 - x * x / 10.0, exact)
+    return Follower(list(zip(*lists.values(), strict=True)), period, pad)
 
 
 def _object(file: Path, called: str) -> Mapping[str, Any]:
@@ -177,7 +190,7 @@ def _number(content: Mapping[str, Any], key: str, called: str, file: Path) -> fl
     return float(value)  # type: ignore[arg-type]
 
 
-def _list(content: Mapping[str, Any], key: str, called: str, file: Path) -> Array:
+def _list(content: Mapping[str, Any], key: str, called: str, file: Path) -> list[float]:
     values = content.get(key)
     if not isinstance(values, list) or not values:
         raise InputError(f"{called}: {file}: {key!r} is missing or no list of numbers")
@@ -186,7 +199,7 @@ def _list(content: Mapping[str, Any], key: str, called: str, file: Path) -> Arra
             raise InputError(
                 f"{called}: {file}: {key!r}[{place}] is {value!r}, a finite number is needed"
             )
-    return np.array(values, dtype=float)
+    return [float(value) for value in values]
 
 
 def _is_number(value: Any) -> bool:
