@@ -22,7 +22,6 @@ from .algorithms import Algorithm
 from .compiled.choice import is_compiled, lost_by_algorithm
 from .divergence import DivergenceWatch
 from .fault_schedule import Schedule
-from .feedthrough import Feedthrough
 from .injected import Acting
 from .network import Name, Network
 from .node import Node
