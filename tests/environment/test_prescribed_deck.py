@@ -125,6 +125,15 @@ def test_a_seed_gives_the_wind_its_direction():
         assert drawn.get("velocity") == pytest.approx(given.get("velocity"), rel=1e-12)
 
 
+def test_the_first_gusts_are_along_across_and_down():
+    wind = started(LowAltitudeWind("wind"), mean_speed=8.0, direction=0.7)
+    along, aside, down = wind.generator(0).standard_normal(3)
+    across = 0.1 * 8.0 / (0.177 + 0.000823 * 20) ** 0.4
+    level = (8.0 + across * along + 1j * across * aside) * np.exp(0.7j)
+    expected = [level.real, level.imag, 0.1 * 8.0 * 0.3 * down]
+    assert wind.get("velocity") == pytest.approx(expected, rel=1e-12)
+
+
 def test_without_a_vertical_share_the_wind_is_level():
     wind = started(LowAltitudeWind("wind"), mean_speed=5.0, vertical_share=0.0)
     for _ in range(5):
