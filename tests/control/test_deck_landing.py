@@ -50,6 +50,14 @@ def test_it_sinks_more_slowly_near_the_deck(height, speed):
     assert laws.sinking(height) == pytest.approx(speed)
 
 
+def test_within_the_braking_height_the_law_has_braked_to_its_touch_speed():
+    height, velocity, h = laws.braking(2.0), 2.0, 1e-3
+    while height > 0.0:
+        height -= velocity * h
+        velocity += laws.down(laws.sinking(height), velocity, 0.0) * h
+    assert velocity == pytest.approx(0.4, abs=0.05)
+
+
 def test_the_integral_is_limited_in_its_length():
     total = (0.0, 0.0)
     for _ in range(10_000):

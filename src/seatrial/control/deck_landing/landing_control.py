@@ -36,7 +36,8 @@ class DeckLandingControl(Windows, DeckEstimate, Sampled):
     **Vertical**, by ``control``: "naive" sinks at 0.4 m/s over ground; "relative" at that and 0.3
     per m above 0.5 m, at most 0.8, towards the deck, whose acceleration is fed forward by 0.7;
     "predictive" (`Windows`) waits for a predicted window, meets the predicted deck there by the
-    law of least energy, and goes on as "relative" for the last 0.15 peak periods.
+    law of least energy, and goes on as "relative" for the last 0.15 peak periods, or as soon as
+    the deck is nearer than the way in which that law brakes (`laws.braking`).
 
     **Go around**: the mark is not seen for 1 s while above 0.5 m; the error is above 0.5 m while
     above 0.3 m; the predicted tilt at touch-down exceeds 9 degrees (predictive).
@@ -222,7 +223,8 @@ class DeckLandingControl(Windows, DeckEstimate, Sampled):
         if self.control == "naive":
             return laws.down(0.4, own[2], 0.0)
         left = self._target - t
-        if self.control == "predictive" and left > 0.15 * self.wave_period:
+        braked = height > laws.braking(own[2] - deck[1][2])
+        if self.control == "predictive" and left > 0.15 * self.wave_period and braked:
             return self.meets(t, self.position[2] + self.feet[2], own[2], left)
         wanted = deck[1][2] + laws.sinking(height)
         return laws.down(wanted, own[2], deck[2][2])

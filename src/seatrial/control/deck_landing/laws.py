@@ -55,6 +55,14 @@ def sinking(height: float) -> float:
     return min(0.4 + 0.3 * max(height - 0.5, 0.0), 0.8)
 
 
+def braking(closing: float) -> float:
+    """Return the height, m, in which `down` brakes from a speed towards the deck, m/s, to 0.4 m/s.
+
+    Twice (closing - 0.4 m/s) / 4 s^-1, the way of the lag that the law is on a deck at rest.
+    """
+    return 2.0 * max(closing - 0.4, 0.0) / _VERTICAL
+
+
 def down(wanted: float, velocity: float, deck_acceleration: float) -> float:
     """Return the acceleration downwards for a velocity ``wanted``, m/s."""
     return _VERTICAL * (wanted - velocity) + _FORWARD * deck_acceleration
