@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections import deque
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
@@ -21,11 +20,11 @@ _UNKNOWN, _EXECUTING, _SUCCEEDED, _CANCELED, _ABORTED = 0, 2, 4, 5, 6
 _DONE, _NO_SUCH_GOAL, _OVER = 0, 2, 3
 """Answers to a cancellation."""
 _KEPT = 10
-"""Goals whose results are kept."""
+"""Goals that are over and whose results are kept."""
 Result = Mapping[str, Any]
 
 
-@dataclass
+@dataclass(eq=False)
 class Goal:
     """One goal: its state, and the calls that wait for its result."""
 
@@ -66,7 +65,7 @@ class StepsAction:
         ]
         self._feedback = Writer(participant, f"{base}/feedback", _FEEDBACK)
         self._status = Writer(participant, f"{base}/status", _STATUS, "latched")
-        self._goals: deque[Goal] = deque(maxlen=_KEPT)
+        self._goals: list[Goal] = []
         self._now_ns = 0
 
     def serve(self, now_ns: int) -> None:
@@ -118,6 +117,9 @@ class StepsAction:
 
     def _finish(self, goal: Goal, status: int, result: Result) -> None:
         goal.status, goal.result = status, result
+        over = [g for g in self._goals if g.status != _EXECUTING and g is not goal]
+        acting = [g for g in self._goals if g.status == _EXECUTING]
+        self._goals = [*over, goal][-_KEPT:] + acting
         self._tell()
         for call in goal.waiting:
             call.answer({"status": status, "result": result})

@@ -300,6 +300,10 @@ def test_steps_are_an_action_too(running):
     counts = [(each.feedback.completed_steps, each.feedback.remaining_steps) for each in told]
     assert counts == [(1, 4), (2, 3), (3, 2), (4, 1), (5, 0)]
     assert client.call(f"{base}/send_goal", goals[2], Goal(1_000_000)).accepted
+    for number in range(11, 21):  # ten results are kept beside the goal that acts
+        other = Uuid(bytes([number] * 16))
+        assert client.call(f"{base}/send_goal", other, Goal(1)).accepted
+        assert result_of(other) == (6, 4)
     cancelled = client.call(f"{base}/cancel_goal", GoalInfo(Uuid(bytes(16)), Time(0, 0)))
     assert cancelled.return_code == 0
     assert [bytes(each.goal_id.uuid) for each in cancelled.goals_canceling] == [b"\3" * 16]
@@ -307,7 +311,8 @@ def test_steps_are_an_action_too(running):
     assert client.call(f"{base}/cancel_goal", GoalInfo(goals[2], Time(0, 0))).return_code == 3
     assert result_of(Uuid(bytes([9] * 16))) == (0, 0)
     last = status.take(10)[-1].status_list
-    assert [each.status for each in last] == [6, 4, 5]
+    assert [each.status for each in last] == [6] * 9 + [5]
+    assert result_of(goals[1]) == (0, 0)
 
 
 def test_a_fault_is_injected_and_what_is_none_refused(running):

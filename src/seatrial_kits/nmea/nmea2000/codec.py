@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache, lru_cache
 from typing import Any
@@ -26,6 +26,9 @@ _LIST = "##list##"
 _TEXTS = (FieldTypes.STRING_FIX, FieldTypes.STRING_LZ, FieldTypes.STRING_LAU)
 _MOST_FRAMES = 32
 """Frames of the longest fast packet: 6 bytes, then 7 in each, 223 in all."""
+_MOST_BYTES = 223
+_SEQUENCE = 0xE0
+"""Bits of a fast frame's first byte that number the packet; the others number its frames."""
 
 Fields = dict[str, Any]
 
@@ -111,9 +114,11 @@ class Decoder:
             return None
         if not is_fast(pgn):
             return _single(frame.identifier, frame.data)
-        whole = _decoded(self._decoder, frame)
-        self._keep(f"{pgn} {destination}", str(source), frame, whole is not None)
-        return None if whole is None else _read(whole, pgn, source, destination)
+        whole, key = _decoded(self._decoder, frame), f"{pgn} {destination}"
+        before = self._unfinished.get(str(source), {}).get(key, [])
+        length = _length(frame.data, [bytes.fromhex(data) for _, data in before])
+        self._keep(key, str(source), frame, whole is not None)
+        return None if whole is None else _read(whole, pgn, source, destination, length)
 
     def forget(self, source: int) -> None:
         """Drop what a source has begun: its address is another node's now."""
@@ -159,17 +164,22 @@ def _single(identifier: int, data: bytes) -> Message | None:
     whole = _decoded(NMEA2000Decoder(), frame)
     if whole is None:
         return None
-    read = _read(whole, pgn, source, destination)
-    for name in _cut(pgn, whole.id, 8 * len(data)):
-        read.fields[name] = None  # the package reads the bits that are there as if 0 followed
-    return read
+    return _read(whole, pgn, source, destination, len(data))
 
 
-def _cut(pgn: int, variant: str, bits: int) -> list[str]:
+def _length(last: bytes, before: Sequence[bytes]) -> int:
+    """Return the bytes of a fast packet, as the first frame of its sequence has them."""
+    first = last[0] & _SEQUENCE
+    found = (data[1] for data in (last, *reversed(before)) if len(data) > 1 and data[0] == first)
+    return next(found, _MOST_BYTES)
+
+
+@lru_cache(1024)
+def _cut(pgn: int, variant: str, bits: int) -> frozenset[str]:
     """Return the fields that end behind a number of bits, by canboat's table."""
     layouts = [each for each in DATABASE.pgn_variants(pgn) if each.id == variant]
     fields = [field for each in layouts for field in each.fields]
-    return [f.id for f in fields if (f.bit_offset or 0) + (f.bit_length or 0) > bits]
+    return frozenset(f.id for f in fields if (f.bit_offset or 0) + (f.bit_length or 0) > bits)
 
 
 def _decoded(decoder: Any, frame: Frame) -> Any:
@@ -184,14 +194,16 @@ def _field(name: str, value: Any) -> Any:
     return NMEA2000Field(name, value=value, raw_value=value)
 
 
-def _read(whole: Any, pgn: int, source: int, destination: int) -> Message:
+def _read(whole: Any, pgn: int, source: int, destination: int, length: int) -> Message:
+    """Return what the package has read of a number of bytes; a field that is cut has no value."""
     items: tuple[Fields, ...] = ()
-    fields = {}
+    fields: Fields = {}
+    cut = _cut(pgn, whole.id, 8 * length)  # the package reads them as if 0 followed
     for each in whole.fields:
         if each.id == _LIST:
             items = tuple({name: _value(f) for name, f in item.items()} for item in each.value)
         else:
-            fields[each.id] = _value(each)
+            fields[each.id] = None if each.id in cut else _value(each)
     return Message(pgn, fields, source, destination, items, whole.id)
 
 

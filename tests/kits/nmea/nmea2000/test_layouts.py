@@ -10,7 +10,7 @@ import math
 import pytest
 
 from seatrial_kits.can.frame import Frame
-from seatrial_kits.nmea.nmea2000.codec import GLOBAL
+from seatrial_kits.nmea.nmea2000.codec import GLOBAL, Decoder
 
 from .network import Network
 
@@ -299,3 +299,22 @@ def test_a_rudder_that_is_positive_to_port_has_the_other_sign_on_the_bus():
 def test_a_rudder_that_is_not_connected_is_not_available_with_either_sign():
     for positive in ("port", "starboard"):
         assert sent_field(127245, 32, 16, rudder_positive=positive) == 0x7FFF
+
+
+@pytest.mark.parametrize("pgn", FAST)
+def test_what_a_cut_fast_packet_has_is_the_whole_one_s(pgn):
+    """A field is read if all its bits came, and then as in the whole message."""
+
+    def read(data):
+        decoder = Decoder({})
+        message = [decoder.decode(frame) for frame in frames_of(pgn, data)][-1]
+        return None if message is None else message.fields
+
+    whole = packed(pgn)
+    for length in range(1, len(whole)):
+        cut = read(whole[:length])
+        if cut is None:  # shorter than its variant's fixed fields
+            continue
+        kept = {name: value for name, value in cut.items() if value is not None}
+        assert kept.items() <= read(whole).items()
+        assert len(kept) >= sum(first + width <= 8 * length for first, width, *_ in LAYOUTS[pgn])
