@@ -17,7 +17,7 @@ from pathlib import Path
 
 from seatrial.links.text import encode
 from seatrial.sim.master import Master
-from seatrial.system.assembly import assemble
+from seatrial.system.assembling.assembly import assemble
 from seatrial.system.flattening import load_rig
 from seatrial_kits.arduino.component import Arduino
 

@@ -18,7 +18,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from seatrial.sim.master import Master
-from seatrial.system.assembly import assemble
+from seatrial.system.assembling.assembly import assemble
 from seatrial.system.flattening import load_rig
 from seatrial_kits.can.component import NODES, CanBus
 from seatrial_kits.can.controller import Controller

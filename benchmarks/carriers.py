@@ -25,7 +25,7 @@ from typing import Any
 
 from seatrial.sim import master as master_module
 from seatrial.sim.master import Master
-from seatrial.system.assembly import assemble
+from seatrial.system.assembling.assembly import assemble
 from seatrial.system.flattening import load_rig
 from seatrial.system.rig import Rig
 from seatrial.system.system import System

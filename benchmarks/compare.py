@@ -23,7 +23,7 @@ from typing import Any
 
 import fmpy
 
-from seatrial.system.assembly import assemble
+from seatrial.system.assembling.assembly import assemble
 from seatrial.system.flattening import load_rig
 from seatrial_kits.interchange.ssp.describing import Experiment
 from seatrial_kits.interchange.ssp.writing import write_ssp

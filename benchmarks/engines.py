@@ -37,7 +37,7 @@ def _parted(name: str) -> tuple[str, str]:
 
 def ours(ssp: Path, steps: int, algorithm: str, watch: list[str], *, python: bool) -> Result:
     from seatrial.sim import master as module
-    from seatrial.system.assembly import assemble
+    from seatrial.system.assembling.assembly import assemble
     from seatrial_kits.interchange.ssp.reading import read_ssp
 
     if python:
@@ -56,7 +56,7 @@ def ours(ssp: Path, steps: int, algorithm: str, watch: list[str], *, python: boo
 
 def fmpy_arrays(ssp: Path, steps: int, step: float, watch: list[str]) -> Result:
     """A loop written by hand for real numbers: FMI's functions, in arrays allocated once."""
-    from seatrial.system.assembly import assemble
+    from seatrial.system.assembling.assembly import assemble
     from seatrial_kits.interchange.ssp.reading import read_ssp
 
     system = assemble(read_ssp(ssp).rig)
@@ -132,7 +132,7 @@ def fmpy_lists(ssp: Path, steps: int, step: float, watch: list[str]) -> Result:
     """A loop written by hand: a list call of FMPy to get and to set per type, FMU and step."""
     from fmpy.fmi2 import FMU2Slave
 
-    from seatrial.system.assembly import assemble
+    from seatrial.system.assembling.assembly import assemble
     from seatrial_kits.interchange.ssp.reading import read_ssp
 
     system = assemble(read_ssp(ssp).rig)

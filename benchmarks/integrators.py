@@ -22,7 +22,7 @@ from scipy.integrate import solve_ivp
 
 from seatrial.fmi.compiled_functions import compiled_function
 from seatrial.model.expressions import bind
-from seatrial.system.assembly import assemble
+from seatrial.system.assembling.assembly import assemble
 from seatrial.system.flattening import load_rig
 
 from .history import noted

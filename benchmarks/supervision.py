@@ -33,7 +33,7 @@ from .pages import write_measured
 _IMPORT = """
 import gc, time
 gc.set_threshold(200_000)  # as the command line has it
-import seatrial.trial.running.run, seatrial.system.assembly, seatrial.fmi.loading.load
+import seatrial.trial.running.run, seatrial.system.assembling.assembly, seatrial.fmi.loading.load
 begun = time.perf_counter()
 import seatrial.trial.running.supervision
 print(time.perf_counter() - begun)

@@ -10,9 +10,9 @@ from parts.markdown import shown_unit, shown_value, table
 from seatrial.fmi.components.source import shipped_sources
 from seatrial.model.ports import Parameter
 from seatrial.shipped import shipped_folder
-from seatrial.system.entries import Resolved
 from seatrial.system.parameters import load_vehicle
 from seatrial.system.profile.kinds import keys
+from seatrial.system.references.entries import Resolved
 
 _SENSORS = ("ahrs", "anemometer", "compass", "depth", "gnss", "imu")
 _OF_LINKS = ("arduino", "ardupilot", "can", "gprs", "mavlink", "nmea", "px4", "videoray")

@@ -9,9 +9,9 @@ import pyarrow.parquet as pq
 import pytest
 
 from seatrial.errors import InputError
-from seatrial.trial.campaigns.comparison import compare_campaigns
-from seatrial.trial.campaigns.comparison_page import write_comparison_page
 from seatrial.trial.campaigns.in_folders import run_campaign
+from seatrial.trial.campaigns.results.comparison import compare_campaigns
+from seatrial.trial.campaigns.results.comparison_page import write_comparison_page
 from tests.command import seatrial
 
 JSON = Path(__file__).parents[2] / "docs/reference/json.md"

@@ -11,8 +11,8 @@ import pytest
 from seatrial.errors import InputError
 from seatrial.trial.campaigns.campaign import load_campaign
 from seatrial.trial.campaigns.designs import Design
-from seatrial.trial.campaigns.maps import campaign_map, map_figure, said_of
-from seatrial.trial.campaigns.page import write_table_page
+from seatrial.trial.campaigns.results.maps import campaign_map, map_figure, said_of
+from seatrial.trial.campaigns.results.page import write_table_page
 from seatrial.trial.campaigns.sweep import How, run_sweep
 from seatrial.trial.campaigns.table import units_of
 

@@ -6,8 +6,8 @@ import numpy as np
 import pyarrow.parquet as pq
 import pytest
 
-from seatrial.trial.campaigns.overview import Overview
-from seatrial.trial.campaigns.page import write_table_page
+from seatrial.trial.campaigns.results.overview import Overview
+from seatrial.trial.campaigns.results.page import write_table_page
 from seatrial.trial.campaigns.sweep import run_sweep
 from seatrial.trial.campaigns.table import read_rows, units_of
 

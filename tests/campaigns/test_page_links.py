@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from seatrial.trial.campaigns.page import write_table_page
+from seatrial.trial.campaigns.results.page import write_table_page
 from seatrial.trial.campaigns.sweep import run_sweep
 from seatrial.trial.reports.campaign_report import write_case_report
 from tests.kits.live.browser import chromium, opened

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from seatrial.trial.campaigns.paired import mcnemar, mean_difference, rate_difference
+from seatrial.trial.campaigns.results.paired import mcnemar, mean_difference, rate_difference
 
 
 @pytest.mark.parametrize(

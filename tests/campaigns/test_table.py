@@ -14,7 +14,7 @@ from scipy.stats import beta
 import seatrial
 from seatrial.errors import InputError
 from seatrial.trial.campaigns.campaign import load_campaign
-from seatrial.trial.campaigns.page import write_table_page
+from seatrial.trial.campaigns.results.page import write_table_page
 from seatrial.trial.campaigns.stopping_rule import StoppingRule, failure_interval
 from seatrial.trial.campaigns.sweep import How, run_sweep
 from seatrial.trial.files.trial import load_trial

@@ -12,7 +12,7 @@ import pytest
 from typer.testing import CliRunner
 
 from seatrial.cli.fmu import fmu_app
-from seatrial.system.assembly import assemble
+from seatrial.system.assembling.assembly import assemble
 from seatrial.system.flattening import load_rig
 from tests.command import seatrial
 from tests.fmi.boats import BARGE

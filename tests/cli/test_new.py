@@ -7,9 +7,9 @@ import tomllib
 import pytest
 
 from seatrial import Simulation
-from seatrial.cli.new import KINDS
-from seatrial.cli.templates import texts, write
-from seatrial.system.assembly import assemble
+from seatrial.cli.making.new import KINDS
+from seatrial.cli.making.templates import texts, write
+from seatrial.system.assembling.assembly import assemble
 from seatrial.system.flattening import load_rig
 from seatrial.system.profile.profile import check_profile, load_profile
 from seatrial.trial.files.trial import load_trial

@@ -329,7 +329,7 @@ INTERRUPTED = {
 @pytest.mark.parametrize("where", INTERRUPTED)
 def test_a_signal_before_a_command_heeds_any_is_one_message(where: str, tmp_path: Path) -> None:
     code = (
-        "import os, signal, seatrial.cli.run as run\n"
+        "import os, signal, seatrial.cli.running.run as run\n"
         "from seatrial.cli import main\n"
         "class Field:\n"
         "    def __set_name__(self, *_):\n"

@@ -2,10 +2,10 @@
 
 import pytest
 
-from seatrial.cli.templates import texts, write
+from seatrial.cli.making.templates import texts, write
 from seatrial.errors import InputError
-from seatrial.system.assembly import assemble
-from seatrial.system.fitted_parts import forgotten, vacant
+from seatrial.system.assembling.assembly import assemble
+from seatrial.system.assembling.fitted_parts import forgotten, vacant
 from seatrial.system.flattening import load_rig
 from tests.command import seatrial
 

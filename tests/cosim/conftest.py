@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from seatrial.sim.master import Master
-from seatrial.system.assembly import assemble
+from seatrial.system.assembling.assembly import assemble
 from seatrial.system.flattening import load_rig
 from seatrial.system.system import System
 

@@ -10,7 +10,7 @@ import pytest
 
 from seatrial.errors import InputError
 from seatrial.sim.master import Master
-from seatrial.system.assembly import assemble
+from seatrial.system.assembling.assembly import assemble
 from seatrial.system.flattening import load_rig
 from seatrial.system.system import System
 from seatrial.trial.files.trial import load_trial

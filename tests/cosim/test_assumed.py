@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from seatrial.system.assembly import assemble
+from seatrial.system.assembling.assembly import assemble
 from seatrial.system.flattening import load_rig
 from seatrial.system.shape import ShapePart
 from seatrial.system.silhouette import silhouettes

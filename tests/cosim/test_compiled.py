@@ -16,7 +16,7 @@ from seatrial.fmi import on_demand
 from seatrial.sim.compiled import library
 from seatrial.sim.compiled.rows import Rows
 from seatrial.sim.master import Master
-from seatrial.system.assembly import assemble
+from seatrial.system.assembling.assembly import assemble
 from seatrial.system.flattening import load_rig
 
 from ..fmi.native import build_native_fmu, changed

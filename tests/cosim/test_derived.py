@@ -9,9 +9,9 @@ import pytest
 from seatrial.errors import InputError
 from seatrial.fmi.direct import DirectInstance
 from seatrial.model.component import Component, Parameter
-from seatrial.system.entries import Computed, Entry, Resolved
 from seatrial.system.parameters import Vehicle, load_vehicle
-from seatrial.system.values import Given, from_entry, port_scalars
+from seatrial.system.references.entries import Computed, Entry, Resolved
+from seatrial.system.references.values import Given, from_entry, port_scalars
 
 HEAD = 'title = "Boat"\nsource = "drawing 7"\n'
 BOAT = (

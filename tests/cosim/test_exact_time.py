@@ -13,7 +13,7 @@ import seatrial.sim.master
 from seatrial.model.component import NS
 from seatrial.sim.instants import interval
 from seatrial.sim.master import Master
-from seatrial.system.assembly import assemble
+from seatrial.system.assembling.assembly import assemble
 from seatrial.system.flattening import load_rig
 
 from ..fmi.native import build_native_fmu, changed, variant

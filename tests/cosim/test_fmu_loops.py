@@ -10,7 +10,7 @@ import pytest
 
 from seatrial.errors import SimulationError
 from seatrial.sim.master import Master
-from seatrial.system.assembly import assemble
+from seatrial.system.assembling.assembly import assemble
 from seatrial.system.flattening import load_rig
 from tests.fmi.models import build_model_fmu
 

@@ -17,7 +17,7 @@ import pytest
 
 from seatrial.errors import InputError
 from seatrial.fmi.isolation.isolated import IsolatedInstance
-from seatrial.system.assembly import assemble
+from seatrial.system.assembling.assembly import assemble
 from seatrial.system.flattening import load_rig
 from seatrial.trial.files.trial import load_trial
 from seatrial.trial.running.run import run_trial

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from seatrial.errors import InputError
-from seatrial.system.assembly import assemble
+from seatrial.system.assembling.assembly import assemble
 from seatrial.system.flattening import load_rig
 from seatrial.system.moved_vehicle import move_vehicle, within
 from seatrial.system.parameters import load_vehicle

@@ -10,10 +10,10 @@ from seatrial.errors import InputError
 from seatrial.fmi.direct import DirectInstance
 from seatrial.model.component import Component, Input, Output, Parameter
 from seatrial.model.units import conversion
-from seatrial.system.entries import Entry
 from seatrial.system.files import available
 from seatrial.system.parameters import Vehicle, load_vehicle
-from seatrial.system.values import Given, from_entry, from_written, port_scalars
+from seatrial.system.references.entries import Entry
+from seatrial.system.references.values import Given, from_entry, from_written, port_scalars
 
 HEAD = 'title = "Boat"\nsource = "drawing 7"\n'
 BOAT = (

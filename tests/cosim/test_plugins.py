@@ -78,7 +78,7 @@ PROGRAM = """
 import sys
 from seatrial.sim.master import Master
 from seatrial.system.flattening import load_rig
-from seatrial.system.assembly import assemble
+from seatrial.system.assembling.assembly import assemble
 
 system = assemble(load_rig(sys.argv[1]), "direct")
 master = Master(system)

@@ -2,7 +2,7 @@
 
 import pytest
 
-from seatrial.system.assembly import assemble
+from seatrial.system.assembling.assembly import assemble
 from seatrial.system.flattening import load_rig
 from seatrial.trial.files.trial import load_trial
 from seatrial.trial.running.preparation import prepare

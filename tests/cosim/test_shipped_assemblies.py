@@ -9,10 +9,10 @@ import pytest
 
 from seatrial.errors import InputError
 from seatrial.fmi.components.index import component_class
-from seatrial.system.assembly import assemble
+from seatrial.system.assembling.assembly import assemble
 from seatrial.system.flattening import load_rig
+from seatrial.system.references.values import port_scalars
 from seatrial.system.system import System
-from seatrial.system.values import port_scalars
 from tests.kit import needs_kits
 
 pytestmark = needs_kits("arduino", "mavlink", "nmea", "videoray")

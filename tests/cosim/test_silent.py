@@ -10,8 +10,8 @@ import pytest
 
 from seatrial.errors import InputError
 from seatrial.sim.compiled import choice
-from seatrial.system.assembly import assemble
-from seatrial.system.fitted_parts import forgotten
+from seatrial.system.assembling.assembly import assemble
+from seatrial.system.assembling.fitted_parts import forgotten
 from seatrial.system.flattening import load_rig
 from seatrial.trial.files.trial import load_trial
 from seatrial.trial.running.preparation import prepare

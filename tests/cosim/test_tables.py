@@ -9,7 +9,7 @@ import pytest
 
 from seatrial.errors import InputError
 from seatrial.fmi.loading.load import load_fmu, open_instance
-from seatrial.system.assembly import assemble
+from seatrial.system.assembling.assembly import assemble
 from seatrial.system.flattening import load_rig
 from seatrial.system.system import Engine
 from seatrial_kits.interchange.ssp.reading import read_ssp

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from seatrial.errors import InputError
-from seatrial.system.assembly import assemble
+from seatrial.system.assembling.assembly import assemble
 from seatrial.system.flattening import load_rig
 from seatrial.system.profile.profile import check_profile
 from seatrial.system.tunables import Tunable, carried

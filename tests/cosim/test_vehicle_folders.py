@@ -9,7 +9,7 @@ import pytest
 
 from seatrial.errors import InputError
 from seatrial.shipped import available, available_places, shipped_folder
-from seatrial.system.assembly import assemble
+from seatrial.system.assembling.assembly import assemble
 from seatrial.system.files import find_file, find_place
 from seatrial.system.flattening import load_rig
 from seatrial.system.parameters import load_vehicle

@@ -11,7 +11,7 @@ from seatrial.physics.craft.surface_vessel import SurfaceVessel
 from seatrial.physics.craft.thruster_ship import ThrusterShip
 from seatrial.physics.parts.mmg_ship import MmgShip
 from seatrial.system.parameters import load_vehicle
-from seatrial.system.values import from_entry, port_scalars
+from seatrial.system.references.values import from_entry, port_scalars
 
 FLEET = {
     "hydrone": ("marine-craft", MarineCraft),

@@ -4,7 +4,7 @@ from seatrial.devices.actuators.rudder_machine import RudderMachine
 from seatrial.fmi.direct import DirectInstance
 from seatrial.physics.craft.manoeuvring_ship import ManoeuvringShip
 from seatrial.system.parameters import load_vehicle
-from seatrial.system.values import from_entry, port_scalars
+from seatrial.system.references.values import from_entry, port_scalars
 
 L, U = 160.93, 7.7175
 FEET = 25.3171479  # 15 knots in ft/s: what B of the source is too large by

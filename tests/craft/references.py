@@ -6,9 +6,9 @@ from pathlib import Path
 import numpy as np
 
 from seatrial.fmi.components.index import component_class
-from seatrial.system.derived import measures
 from seatrial.system.parameters import load_vehicle
-from seatrial.system.quantities import amount
+from seatrial.system.references.derived import measures
+from seatrial.system.references.quantities import amount
 
 DATA = Path(__file__).parents[1] / "reference"
 STATES = ("x", "y", "z", "phi", "theta", "psi", "u", "v", "w", "p", "q", "r")

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from seatrial.errors import InputError
-from seatrial.physics.craft.hydrodynamics import TERMS, WAVES, WIND
 from seatrial.physics.craft.marine_craft import MarineCraft
 from seatrial.physics.craft.rov import Rov
+from seatrial.physics.craft.terms.hydrodynamics import TERMS, WAVES, WIND
 
 STORED = json.loads(
     (Path(__file__).parents[1] / "reference/six_dof_right_hand_sides.json").read_text()

@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from seatrial.errors import InputError
-from seatrial.physics.craft.hydrodynamics import coriolis_load
 from seatrial.physics.craft.kinematics import rotation
 from seatrial.physics.craft.marine_craft import MarineCraft
+from seatrial.physics.craft.terms.hydrodynamics import coriolis_load
 
 INERTIAL = {
     "mass": 12.0,

@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from seatrial.physics.craft.context import Context
 from seatrial.physics.craft.marine_craft import MarineCraft
 from seatrial.physics.craft.rov import Rov, propellers
 from seatrial.physics.craft.six_dof import six_dof_motion
+from seatrial.physics.craft.terms.context import Context
 from seatrial.physics.craft.through_water import flow_outputs
 from seatrial.physics.craft.wave_hull import WaveHull
 from seatrial.physics.parts.flow import through_water

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from seatrial.physics.craft.context import Context
-from seatrial.physics.craft.hydrodynamics import TERMS
 from seatrial.physics.craft.rov import Rov
+from seatrial.physics.craft.terms.context import Context
+from seatrial.physics.craft.terms.hydrodynamics import TERMS
 
 from .numerically import numbers, pose
 

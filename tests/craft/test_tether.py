@@ -13,7 +13,7 @@ from seatrial.model.units import unit
 from seatrial.physics.cable.cable_shape import hanging_shape
 from seatrial.physics.cable.tether import Tether
 from seatrial.sim.master import Master
-from seatrial.system.assembly import assemble
+from seatrial.system.assembling.assembly import assemble
 from seatrial.system.flattening import load_rig
 from seatrial.system.parameters import load_vehicle
 from tests.devices.running import started

@@ -19,10 +19,10 @@ from seatrial.control.allocation.thruster_allocation import ThrusterAllocation
 from seatrial.control.depth_hold import DepthHold
 from seatrial.control.heading_hold import HeadingHold
 from seatrial.model.units import quantity
-from seatrial.physics.craft.context import Context
 from seatrial.physics.craft.kinematics import rotation_rows
 from seatrial.physics.craft.rov import Rov
-from seatrial.physics.craft.slender import hull_lift
+from seatrial.physics.craft.terms.context import Context
+from seatrial.physics.craft.terms.slender import hull_lift
 from seatrial.system.parameters import load_vehicle
 from tests.devices.running import started
 

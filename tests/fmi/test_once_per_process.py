@@ -14,7 +14,7 @@ import pytest
 
 from seatrial import Simulation
 from seatrial.fmi.isolation.isolated import IsolatedInstance
-from seatrial.system.assembly import assemble
+from seatrial.system.assembling.assembly import assemble
 from seatrial_kits.interchange.osp.reading import read_osp
 from seatrial_kits.interchange.ssp.reading import read_ssp
 

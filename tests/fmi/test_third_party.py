@@ -9,7 +9,7 @@ import pytest
 
 from seatrial.errors import InputError, SimulationError
 from seatrial.sim.master import Master
-from seatrial.system.assembly import assemble
+from seatrial.system.assembling.assembly import assemble
 from seatrial.system.flattening import load_rig
 
 from .native import changed, forgetful

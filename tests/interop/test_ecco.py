@@ -13,7 +13,7 @@ import pytest
 
 from seatrial.fmi.loading.load import load_fmu
 from seatrial.sim.master import Master
-from seatrial.system.assembly import assemble
+from seatrial.system.assembling.assembly import assemble
 from seatrial_kits.interchange.export import export_osp
 from seatrial_kits.interchange.osp.reading import read_osp
 from tests.cosim.bodies import TEXT

@@ -19,7 +19,7 @@ import pytest
 
 from seatrial.sim.master import Master
 from seatrial.sim.survey.surveying import Surveyed, fmus_in, survey
-from seatrial.system.assembly import assemble
+from seatrial.system.assembling.assembly import assemble
 from seatrial.system.rig import duration_ns
 from seatrial_kits.interchange.osp.reading import read_osp
 from seatrial_kits.interchange.osp.structure import read_structure

@@ -12,7 +12,7 @@ import pytest
 
 from seatrial.model.component import seconds
 from seatrial.sim.master import Master
-from seatrial.system.assembly import assemble
+from seatrial.system.assembling.assembly import assemble
 from seatrial.system.files import find_file
 from seatrial.system.flattening import load_rig
 from seatrial.system.system import Engine, System

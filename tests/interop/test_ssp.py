@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from seatrial.system.assembly import assemble
+from seatrial.system.assembling.assembly import assemble
 from seatrial.system.flattening import load_rig
 from seatrial.system.system import System
 from seatrial_kits.interchange.export import export_ssp

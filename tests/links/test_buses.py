@@ -3,7 +3,7 @@
 import pytest
 
 from seatrial.shipped import provided_folders
-from seatrial.system.assembly import assemble
+from seatrial.system.assembling.assembly import assemble
 from seatrial.system.files import read_toml
 from seatrial.system.flattening import load_rig
 from tests.kit import needs_kits

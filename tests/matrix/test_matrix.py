@@ -18,7 +18,7 @@ from pathlib import Path
 import pytest
 
 import seatrial_kits.live.session  # noqa: F401  every copy of this process has it then
-from seatrial.cli import run_options
+from seatrial.cli.running import run_options
 
 from . import kinds as reasons
 from .cells import CARRIERS, EVENTS, applying, every, excuse, kinds, pairwise, runs

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import seatrial
-from seatrial.cli.templates import texts, write
+from seatrial.cli.making.templates import texts, write
 
 pytestmark = [pytest.mark.interop, pytest.mark.long]
 

@@ -12,7 +12,7 @@ import pytest
 from seatrial import run_trial
 from seatrial.errors import InputError
 from seatrial.model.units import quantity
-from seatrial.system.assembly import assemble
+from seatrial.system.assembling.assembly import assemble
 from seatrial.trial.files.scenario import read_scenario
 from seatrial.trial.files.trial import load_trial
 from tests.kits.interchange.osp_files import write_osp

@@ -13,9 +13,9 @@ from .written import as_duration, as_engine, as_settings
 if TYPE_CHECKING:
     from ..sim.fault_schedule import Fault
     from ..sim.master import Master
+    from ..system.references.values import Given
     from ..system.rig import Rig
     from ..system.system import System
-    from ..system.values import Given
     from ..trial.files.trial import Event, Trial
 
 
@@ -55,7 +55,7 @@ class Assembled:
 
         Raises InputError for a sea, current or wind that the trial has not.
         """
-        from ..system.values import port_scalars
+        from ..system.references.values import port_scalars
         from ..trial.files.surroundings import GROUPS
 
         group, _, name = key.partition(".")
@@ -100,7 +100,7 @@ def assembled(
         if isinstance(name, Trial):
             return _of_trial(name.changed(changes, "set") if changes else name, engine)
         return _of_trial(load_trial(str(name), changes=changes, origin="set"), engine)
-    from ..system.assembly import assemble
+    from ..system.assembling.assembly import assemble
     from ..system.isolation import KEY_END, isolated_in, isolating
 
     loaded = _loaded_rig(str(name), as_duration(step), choices)
@@ -134,7 +134,7 @@ def _is_trial(name: str) -> bool:
 
 
 def _of_trial(trial: Trial, engine: str) -> Assembled:
-    from ..system.assembly import assemble
+    from ..system.assembling.assembly import assemble
     from ..trial.running.checks import check_events, trial_faults
 
     if trial.start_ns:
@@ -172,7 +172,7 @@ def _loaded_rig(name: str, step: Any, choices: Mapping[str, str] | None) -> Rig:
 
 def give(made: Assembled, settings: Mapping[str, Any], seed: int | None) -> None:
     """Give a system further settings, and another seed. Raises InputError."""
-    from ..system.component_parameters import give_seed
+    from ..system.assembling.component_parameters import give_seed
 
     system = made.system
     if seed is not None:

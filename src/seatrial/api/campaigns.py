@@ -86,8 +86,8 @@ class CampaignResult:
 
         A page that a kit makes of the campaign comes too.
         """
-        from ..trial.campaigns.further_page import write_further_page
-        from ..trial.campaigns.page import write_table_page
+        from ..trial.campaigns.results.further_page import write_further_page
+        from ..trial.campaigns.results.page import write_table_page
         from ..trial.reports.campaign_report import write_campaign_report
 
         if self.table is not None:

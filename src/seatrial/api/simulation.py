@@ -387,7 +387,7 @@ class Simulation:
 
     def _variables(self, name: str) -> tuple[str, Sequence[Variable]]:
         """Return the component and the scalars that a name means."""
-        from ..system.values import port_names, port_scalars
+        from ..system.references.values import port_names, port_scalars
 
         part, port = self._master.system.located(name, name)[0]
         component = part.name

@@ -97,7 +97,7 @@ def _compare_with_log(
 
 
 def _compare_campaigns(folder_a: Path, folder_b: Path, page: Path | None) -> None:
-    from ..trial.campaigns.comparison import compare_campaigns
+    from ..trial.campaigns.results.comparison import compare_campaigns
 
     comparison = compare_campaigns(folder_a, folder_b)
     answer.result = comparison.content()
@@ -106,7 +106,7 @@ def _compare_campaigns(folder_a: Path, folder_b: Path, page: Path | None) -> Non
     for line in comparison.lines:
         console.print(escape(line), soft_wrap=True)
     if page is not None:
-        from ..trial.campaigns.comparison_page import write_comparison_page
+        from ..trial.campaigns.results.comparison_page import write_comparison_page
 
         answer.result["page"] = str(write_comparison_page(comparison, page))
         console.print(f"page: {page}", soft_wrap=True)

@@ -12,8 +12,8 @@ from rich.markup import escape
 from ..errors import InputError, unmatched
 from ..model.readable import number
 from ..plugins import offered
-from ..system.assembly import assemble
-from ..system.fitted_parts import forgotten, vacant
+from ..system.assembling.assembly import assemble
+from ..system.assembling.fitted_parts import forgotten, vacant
 from ..system.flattening import load_rig
 from ..system.packages import is_package, read_package
 from ..system.paths import joined, split_axis

@@ -28,8 +28,8 @@ from ..fmi.loading.built import build_needed, compiler_of
 from ..fmi.loading.load import load_fmu, open_instance
 from ..plugins import service
 from ..system.parameters import OWN, load_vehicle, split_reference
+from ..system.references.values import from_entry
 from ..system.system import settable
-from ..system.values import from_entry
 from .answer import answer
 from .options import Autopilot, Choices, Every, Match, Settings, Variant, Vehicle, changes_of
 from .show import MOST_SHOWN, console, print_more, print_notes, print_table

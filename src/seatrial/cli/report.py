@@ -7,8 +7,8 @@ from typing import Annotated
 
 import typer
 
-from ..trial.campaigns.further_page import write_further_page
-from ..trial.campaigns.page import has_table, write_table_page
+from ..trial.campaigns.results.further_page import write_further_page
+from ..trial.campaigns.results.page import has_table, write_table_page
 from ..trial.reports.campaign_report import CAMPAIGN, write_campaign_report
 from ..trial.reports.playing import play
 from ..trial.reports.report import write_report

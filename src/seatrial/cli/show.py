@@ -19,7 +19,7 @@ from .answer import answer
 
 if TYPE_CHECKING:
     from ..trial.campaigns.cases import Case
-    from ..trial.campaigns.finding import Shown
+    from ..trial.campaigns.results.finding import Shown
     from ..trial.criteria.verdict import Verdict
     from ..trial.running.run import Result
 

@@ -9,8 +9,8 @@ from typing import Any, Literal
 from ..errors import InputError, unknown
 from ..fmi.instance import Value, Variable
 from ..system.part import Part
+from ..system.references.values import from_written, port_names, port_scalars
 from ..system.system import System, settable
-from ..system.values import from_written, port_names, port_scalars
 from .master import Master
 
 ActionKind = Literal["set", "override", "release"]

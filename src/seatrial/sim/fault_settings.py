@@ -11,8 +11,8 @@ from ..model.component import NS
 from ..model.faults.catalogue import kinds
 from ..model.units import quantity
 from ..system.fault_entry import FaultEntry
+from ..system.references.values import from_written
 from ..system.rig import duration_ns
-from ..system.values import from_written
 
 
 class Settings:

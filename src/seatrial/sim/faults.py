@@ -13,9 +13,9 @@ from ..model.faults.catalogue import FAILURES, kinds
 from ..model.faults.operators import Draw, Operator, drawing
 from ..model.faults.text import fault_text
 from ..system.fault_entry import FaultEntry, check_entry
+from ..system.references.values import port_names, port_scalars
 from ..system.rig import duration_ns
 from ..system.system import System
-from ..system.values import port_names, port_scalars
 from .fault_schedule import Fault, Stepped
 from .fault_settings import Settings
 from .streams import Stream, is_stream

@@ -17,8 +17,8 @@ from numpy.typing import NDArray
 
 from ..errors import InputError, unmatched
 from ..model.component import NS
+from ..system.references.values import storable
 from ..system.system import System
-from ..system.values import storable
 from .compiled.rows import Rows
 from .master import Master
 

@@ -9,9 +9,9 @@ from ..fmi.instance import Variable
 from ..model.ports import FRAMES
 from ..model.units import conversion
 from .joining import End, Group, Resolver, kind_of
+from .references.values import port_scalars
 from .rig import ConnectionEntry, Feed, Scope
 from .system import Connection, Joint, System
-from .values import port_scalars
 
 _SOURCES = ("output",)
 _TARGETS = ("input", "tunable parameter")

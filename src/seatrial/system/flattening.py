@@ -11,8 +11,8 @@ from typing import Any
 from ..errors import InputError, unknown
 from ..vehicle_folders import Place, owner, stem
 from .files import Source, find_place, read_place, validated
-from .own_references import with_owner
 from .paths import joined
+from .references.own_references import with_owner
 from .rig import ComponentEntry, Rig, RigFile, Scope, check_rig_file, duration_ns
 
 _DEEPEST = 16

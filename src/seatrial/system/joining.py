@@ -10,8 +10,8 @@ from ..fmi.instance import Variable, Variables
 from ..model.terminals import Rule
 from .part import Part
 from .paths import joined
+from .references.values import port_names, port_scalars
 from .rig import Scope, Shown
-from .values import port_names, port_scalars
 
 _PLUGS = ("actuators", "wrench")
 """Terminals put together in a rig whose inputs must all be met."""

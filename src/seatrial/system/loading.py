@@ -15,10 +15,10 @@ from ..fmi.files.options import FmuOptions
 from ..fmi.instance import Instance
 from ..model.component import seconds
 from .part import Part
+from .references.values import from_written
 from .rig import ComponentEntry, Rig, Scope, duration_ns
 from .sums import SumInstance
 from .system import Engine
-from .values import from_written
 
 if TYPE_CHECKING:
     from ..fmi.interfaces.loaded import LoadedFmu

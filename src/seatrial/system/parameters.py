@@ -12,11 +12,11 @@ from pydantic import Field
 from ..errors import InputError, unknown
 from ..fmi.instance import Variables
 from ..vehicle_folders import owner
-from .derived import Entries
-from .entries import Resolved, WrittenEntry, written_out
 from .files import FileModel, Source, file_bytes, find_file, parsed_toml, validated
+from .references.derived import Entries
+from .references.entries import Resolved, WrittenEntry, written_out
+from .references.values import port_scalars
 from .shape import Shape, ShapePart
-from .values import port_scalars
 
 OWN = ":own"
 """Ends a reference of which a component takes only what it has a parameter for."""

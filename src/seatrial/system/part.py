@@ -9,7 +9,7 @@ from typing import Any
 
 from ..fmi.instance import Instance
 from .parameters import Body, Outline
-from .values import Given
+from .references.values import Given
 
 
 @dataclass

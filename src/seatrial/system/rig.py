@@ -17,8 +17,8 @@ from ..model.component import NS
 from ..model.units import quantity
 from .files import FileModel, Source, validated
 from .paths import joined
+from .references.values import Setting
 from .registry import ALGORITHMS
-from .values import Setting
 
 LONGEST_S = 9.0e9
 """Times are counted in ns in 64 bits: 285 years."""

@@ -14,8 +14,8 @@ from ..fmi.instance import Variable, Variables
 from .joining import Resolver
 from .part import Part
 from .paths import split_path
+from .references.values import Given, from_written, placed, port_names, port_scalars
 from .rig import Rig
-from .values import Given, from_written, placed, port_names, port_scalars
 
 _LOGGER = logging.getLogger("seatrial.release")
 

@@ -9,7 +9,7 @@ from typing import Annotated, Any
 
 import typer
 
-from seatrial.cli.templates import checked_name, texts, write
+from seatrial.cli.making.templates import checked_name, texts, write
 from seatrial.errors import InputError
 from seatrial.printable import printable
 from seatrial.system.profile.profile import load_profile

@@ -15,10 +15,10 @@ from seatrial.errors import InputError, unknown
 from seatrial.fmi.components.source import ComponentSource, find_source
 from seatrial.fmi.instance import Variable
 from seatrial.model.plant import Plant
-from seatrial.system.component_parameters import derived_seeds, seed_of
+from seatrial.system.assembling.component_parameters import derived_seeds, seed_of
 from seatrial.system.part import Part
+from seatrial.system.references.values import check_limits, from_written, port_names, port_scalars
 from seatrial.system.system import System
-from seatrial.system.values import check_limits, from_written, port_names, port_scalars
 from seatrial_kits.native.surroundings import Met, is_surrounded, surroundings_of
 from seatrial_kits.native.tables import WEATHER_ROLES
 from seatrial_kits.native.tables import is_built_in as built_in_port

@@ -10,7 +10,7 @@ from typing import Any
 from seatrial.cli.show import console, print_notes
 from seatrial.errors import InputError
 from seatrial.shipped import available
-from seatrial.system.assembly import assemble
+from seatrial.system.assembling.assembly import assemble
 from seatrial.system.rig import Rig
 from seatrial.system.system import Engine, System
 from seatrial.system.unread import leave_out_unread

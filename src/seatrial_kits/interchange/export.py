@@ -8,7 +8,7 @@ from typing import Any
 
 from seatrial.errors import InputError
 from seatrial.model.component import seconds
-from seatrial.system.assembly import assemble
+from seatrial.system.assembling.assembly import assemble
 from seatrial.system.system import System
 from seatrial.trial.files.rig_changes import changed_rig, set_values
 from seatrial.trial.files.trial import Trial, is_trial, load_trial

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from seatrial.system.shape_ports import MESHES, mesh_name
+from seatrial.system.assembling.shape_ports import MESHES, mesh_name
 from seatrial.trial.criteria.expressions import FloatArray
 from seatrial.trial.records import quaternions
 from seatrial.trial.records.run_folder import Run, viewed

@@ -22,7 +22,7 @@ from seatrial.cli.options import (
     changes_of,
     engine_named,
 )
-from seatrial.cli.run_options import LiveControl, Open, Port
+from seatrial.cli.running.run_options import LiveControl, Open, Port
 from seatrial.cli.show import console, print_notes, print_reachable
 from seatrial.cli.stopping import stoppable
 from seatrial.cli.watch import Watch

@@ -10,7 +10,7 @@ from typing import Annotated
 import typer
 
 from seatrial.cli.answer import answer
-from seatrial.cli.run_options import Open, Port
+from seatrial.cli.running.run_options import Open, Port
 from seatrial.cli.show import console
 from seatrial.cli.stopping import stoppable
 from seatrial.errors import InputError

@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import lru_cache
 
 from seatrial.control.guidance import RESTING
-from seatrial.system.assembly import assemble
+from seatrial.system.assembling.assembly import assemble
 from seatrial.system.part import Part
 from seatrial.system.system import System
 from seatrial.trial.files.trial import Trial

@@ -12,7 +12,7 @@ from typing import Any
 
 from seatrial.errors import InputError
 from seatrial.model.readable import number
-from seatrial.trial.campaigns.further_page import Written
+from seatrial.trial.campaigns.results.further_page import Written
 from seatrial.trial.records.run_folder import MANIFEST, Run, load_run
 from seatrial.trial.records.run_schema import CAMPAIGN, checked_json
 from seatrial.trial.reports.campaign_report import CAMPAIGN as INDEX

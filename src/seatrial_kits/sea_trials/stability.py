@@ -18,7 +18,7 @@ from seatrial.fmi.components.index import component_class
 from seatrial.model.readable import number
 from seatrial.physics.craft.marine_craft import MarineCraft
 from seatrial.physics.sea.numbers import Array
-from seatrial.system.assembly import assemble
+from seatrial.system.assembling.assembly import assemble
 from seatrial.system.flattening import load_rig
 
 _SHOWN = (*range(0, 91, 10), 120, 150)

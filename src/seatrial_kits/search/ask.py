@@ -18,7 +18,6 @@ from seatrial.trial.campaigns.columns import table_columns
 from seatrial.trial.campaigns.ended import Ended
 from seatrial.trial.campaigns.ended_log import EndedLog, ended_cases
 from seatrial.trial.campaigns.evaluator import Plan
-from seatrial.trial.campaigns.finding import ANSWER, Finding, read_answer
 from seatrial.trial.campaigns.identity import identity_of
 from seatrial.trial.campaigns.questions import (
     LimitsQuestion,
@@ -28,6 +27,7 @@ from seatrial.trial.campaigns.questions import (
     TuneQuestion,
     WorstCaseQuestion,
 )
+from seatrial.trial.campaigns.results.finding import ANSWER, Finding, read_answer
 from seatrial.trial.campaigns.sampled_checks import check
 from seatrial.trial.campaigns.sweep import Done, How, Sweep, changes_of, index_of, workers_of
 from seatrial.trial.campaigns.table import Tables, arrow

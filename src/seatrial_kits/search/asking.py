@@ -13,7 +13,7 @@ from seatrial.errors import InputError, SimulationError, unknown
 from seatrial.system.system import Engine
 from seatrial.trial.campaigns.asked import Asked
 from seatrial.trial.campaigns.campaign import Campaign
-from seatrial.trial.campaigns.finding import Finding
+from seatrial.trial.campaigns.results.finding import Finding
 from seatrial.trial.running.hooks import Hooks
 from seatrial.trial.running.measuring import Measured
 

@@ -10,7 +10,7 @@ from rich.markup import escape
 
 from seatrial.cli.answer import answer
 from seatrial.cli.options import EngineName, Network, Out, engine_named
-from seatrial.cli.run_options import Cluster, Jobs, KeepName, NoReport, RerunChanged, Resume
+from seatrial.cli.running.run_options import Cluster, Jobs, KeepName, NoReport, RerunChanged, Resume
 from seatrial.cli.show import console, print_notes, print_shown
 from seatrial.cli.stopping import stoppable
 from seatrial.cli.watch import Watch
@@ -19,8 +19,8 @@ from seatrial.links.hardware import allow_network
 from seatrial.trial.campaigns.campaign import load_campaign
 from seatrial.trial.campaigns.cases import Case
 from seatrial.trial.campaigns.ended import Ended
-from seatrial.trial.campaigns.finding import Finding
-from seatrial.trial.campaigns.page import write_table_page
+from seatrial.trial.campaigns.results.finding import Finding
+from seatrial.trial.campaigns.results.page import write_table_page
 from seatrial.trial.campaigns.sweep import How, keep_named
 from seatrial.trial.running.hooks import Hooks
 

@@ -7,8 +7,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from seatrial.trial.campaigns.finding import Finding, Shown
 from seatrial.trial.campaigns.questions import TuneQuestion
+from seatrial.trial.campaigns.results.finding import Finding, Shown
 from seatrial.trial.running.measuring import Measured
 
 from .asking import Asking

@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 
 from seatrial import Simulation
-from seatrial.cli.templates import texts, write
+from seatrial.cli.making.templates import texts, write
 from seatrial.system.profile.profile import load_profile
 from tests.command import SEATRIAL, seatrial
 from tests.craft.references import shipped

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from seatrial.errors import InputError
-from seatrial.system.assembly import assemble
+from seatrial.system.assembling.assembly import assemble
 from seatrial.system.flattening import load_rig
 from seatrial.system.parameters import load_vehicle
 from seatrial.trial.files.trial import load_trial

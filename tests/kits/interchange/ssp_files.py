@@ -8,7 +8,7 @@ from pathlib import Path
 from seatrial.fmi.building.export import build_fmu
 from seatrial.fmi.components.source import ComponentSource, find_source
 from seatrial.sim.master import Master
-from seatrial.system.assembly import assemble
+from seatrial.system.assembling.assembly import assemble
 from seatrial.system.system import System
 from seatrial.trial.files.trial import load_trial
 

@@ -12,7 +12,7 @@ import pytest
 from seatrial.errors import InputError
 from seatrial.sim.actions import action
 from seatrial.sim.master import Master
-from seatrial.system.assembly import assemble
+from seatrial.system.assembling.assembly import assemble
 from seatrial.system.flattening import load_rig
 
 from ...fmi.native import SLAVES

@@ -8,7 +8,7 @@ import pytest
 
 from seatrial.errors import InputError
 from seatrial.sim.master import Master
-from seatrial.system.assembly import assemble
+from seatrial.system.assembling.assembly import assemble
 from seatrial.system.packages import is_package
 from seatrial_kits.interchange.osp.reading import read_osp
 from tests.kits.interchange.osp_files import GROUPS, write_osp

@@ -8,7 +8,7 @@ import pytest
 
 from seatrial.errors import InputError
 from seatrial.sim.master import Master
-from seatrial.system.assembly import assemble
+from seatrial.system.assembling.assembly import assemble
 from seatrial_kits.interchange.export import export_osp, export_ssp
 from seatrial_kits.interchange.osp.reading import read_osp
 from tests.kits.interchange.osp_files import write_osp

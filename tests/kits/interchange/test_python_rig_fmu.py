@@ -13,7 +13,7 @@ from pymavlink import mavutil
 from seatrial import Simulation
 from seatrial.errors import InputError
 from seatrial.fmi.loading.load import load_fmu, open_instance
-from seatrial.system.assembly import assemble
+from seatrial.system.assembling.assembly import assemble
 from seatrial.system.flattening import load_rig
 from seatrial_kits.interchange.rig_fmu.face import face_of
 from seatrial_kits.interchange.rig_fmu.frozen import rig_source

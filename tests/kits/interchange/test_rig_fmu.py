@@ -20,7 +20,7 @@ import seatrial.sim.master
 from seatrial import Simulation
 from seatrial.fmi.compiler import HERE, library_here
 from seatrial.fmi.loading.load import load_fmu, open_instance
-from seatrial.system.assembly import assemble
+from seatrial.system.assembling.assembly import assemble
 from seatrial.system.flattening import load_rig
 from seatrial_kits.interchange.rig_fmu.native import build_native_rig, why_not_native
 from seatrial_kits.native.engine import carry_natively

@@ -9,7 +9,7 @@ import pytest
 from fmpy.ssp.ssd import read_ssd
 from lxml import etree
 
-from seatrial.system.assembly import assemble
+from seatrial.system.assembling.assembly import assemble
 from seatrial.system.flattening import load_rig
 from seatrial_kits.interchange.export import export_ssp
 from seatrial_kits.interchange.ssp.reading import read_ssp

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from seatrial.errors import InputError
-from seatrial.system.assembly import assemble
+from seatrial.system.assembling.assembly import assemble
 from seatrial.trial.files.trial import load_trial
 from seatrial_kits.interchange.ssp.reading import read_ssp
 

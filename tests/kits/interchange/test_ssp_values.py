@@ -9,7 +9,7 @@ import pytest
 
 from seatrial.errors import InputError
 from seatrial.sim.master import Master
-from seatrial.system.assembly import assemble
+from seatrial.system.assembling.assembly import assemble
 from seatrial_kits.interchange.ssp.reading import read_ssp
 
 from .ssp_natives import (

@@ -11,7 +11,7 @@ from lxml import etree
 
 from seatrial.errors import InputError
 from seatrial.fmi.loading.load import load_fmu
-from seatrial.system.assembly import assemble
+from seatrial.system.assembling.assembly import assemble
 from seatrial.system.flattening import load_rig
 from seatrial_kits.interchange.export import export_ssp
 from seatrial_kits.interchange.ssp.reading import read_ssp

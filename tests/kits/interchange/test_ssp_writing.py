@@ -12,7 +12,7 @@ from lxml import etree
 from seatrial.errors import InputError
 from seatrial.fmi.building.export import build_fmu
 from seatrial.fmi.components.source import ComponentSource, find_source
-from seatrial.system.assembly import assemble
+from seatrial.system.assembling.assembly import assemble
 from seatrial.system.flattening import load_rig
 from seatrial.trial.files.trial import load_trial
 from seatrial_kits.interchange.export import export_ssp

@@ -13,7 +13,7 @@ from pymavlink import mavutil
 
 from seatrial.errors import InputError
 from seatrial.sim.master import Master
-from seatrial.system.assembly import assemble
+from seatrial.system.assembling.assembly import assemble
 from seatrial.system.flattening import load_rig
 from seatrial.trial.files.trial import load_trial
 from seatrial.trial.running.run import run_trial

@@ -14,7 +14,7 @@ from pymavlink import mavutil, mavwp
 
 from seatrial.links.geodesy import Origin
 from seatrial.sim.master import Master
-from seatrial.system.assembly import assemble
+from seatrial.system.assembling.assembly import assemble
 from seatrial.system.flattening import load_rig
 from seatrial.system.profile.profile import load_profile
 

@@ -8,8 +8,8 @@ import casadi as ca
 
 from seatrial.errors import InputError
 from seatrial.model.component import Parameter
-from seatrial.physics.craft.context import Context, wrench
 from seatrial.physics.craft.marine_craft import MarineCraft
+from seatrial.physics.craft.terms.context import Context, wrench
 
 
 def skeg(c: Context) -> Any:

@@ -16,10 +16,10 @@ from ...model.ports import Output
 from ...model.terminals import MOTION
 from ..sea.loads import Response
 from ..sea.winds import WindState
-from .hydrodynamics import WAVES, WIND
 from .large_angles import HARMONICS, righting_arms, sine_series
 from .seaway import WindySeaway
 from .six_dof import LOADS, SixDofCraft, six_dof_motion
+from .terms.hydrodynamics import WAVES, WIND
 from .wave_hull import HullCoefficients
 from .windage import WindLoad
 

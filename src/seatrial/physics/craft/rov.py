@@ -15,9 +15,9 @@ from ...model.plant import State
 from ...model.ports import Output
 from ...model.terminals import MOTION
 from ..thrusters import OfEach, effect
-from .context import Context, smooth_step, wrench
-from .hydrodynamics import TERMS, read_terms
 from .six_dof import LOADS, SixDofCraft, six_dof_motion
+from .terms.context import Context, smooth_step, wrench
+from .terms.hydrodynamics import TERMS, read_terms
 
 COUNT = 8
 """Most propellers that a hull has."""
@@ -129,7 +129,7 @@ class Rov(Propellers, SixDofCraft):
     terms = Parameter(
         "restoring coriolis damping",
         "1",
-        "terms of the equations, by the names of seatrial.physics.craft.hydrodynamics, with spaces",
+        "terms, by the names of seatrial.physics.craft.terms.hydrodynamics, with spaces",
         check=partial(read_terms, known=_TERMS),
     )
     restoring = Parameter(

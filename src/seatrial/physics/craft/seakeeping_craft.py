@@ -20,11 +20,11 @@ from ..sea.loads import Response
 from ..sea.memory import GROUPS, MODES, MOTIONS, Memory, memories
 from ..sea.panel_files import read_panels
 from ..sea.panels import PanelTables
-from .context import Context
-from .hydrodynamics import TERMS, WAVES, Term, read_terms
 from .marine_craft import MarineCraft
 from .six_dof import six_dof_motion, velocity_through_water
 from .symbolic import rotation_matrix
+from .terms.context import Context
+from .terms.hydrodynamics import TERMS, WAVES, Term, read_terms
 
 RADIATION = "radiation"
 _MODES = [f"{group}{mode}" for group in ("x", "y") for mode in range(1, MODES + 1)]
@@ -69,7 +69,7 @@ class SeakeepingCraft(MarineCraft):
     terms = Parameter(
         "restoring coriolis damping radiation wave-loads",
         "1",
-        "terms of the equations, by the names of seatrial.physics.craft.hydrodynamics, with "
+        "terms of the equations, by the names of seatrial.physics.craft.terms.hydrodynamics, with "
         "spaces; and radiation",
         check=partial(read_terms, known=_TERMS),
     )

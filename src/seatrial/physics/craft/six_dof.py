@@ -19,17 +19,17 @@ from ...model.expressions import Vector
 from ...model.ports import Output
 from ...model.terminals import ATTACHMENT
 from ..sea.loads import Response
-from .context import Context, wrench
-from .coupled_damping import CoupledDamping
-from .hull_points import HullPoints, wet
-from .hydrodynamics import TERMS, Term, read_terms, symmetric
 from .inertia import require_positive_definite
-from .morison import Morison
 from .seaway import Places, Seaway
-from .slender import HullLift, Slender
 from .symbolic import euler_rate_matrix, rotation_matrix, skew
+from .terms.context import Context, wrench
+from .terms.coupled_damping import CoupledDamping
+from .terms.hull_points import HullPoints, wet
+from .terms.hydrodynamics import TERMS, Term, read_terms, symmetric
+from .terms.morison import Morison
+from .terms.slender import HullLift, Slender
+from .terms.winged_body import WingedBody
 from .through_water import ThroughWater, flow_outputs
-from .winged_body import WingedBody
 
 _NED = ("north", "east", "down")
 _TENSOR = ("xx", "yy", "zz", "xy", "xz", "yz")
@@ -77,7 +77,7 @@ class SixDofCraft(
     terms = Parameter(
         "restoring coriolis damping",
         "1",
-        "terms of the equations, by the names of seatrial.physics.craft.hydrodynamics, with spaces",
+        "terms, by the names of seatrial.physics.craft.terms.hydrodynamics, with spaces",
         check=read_terms,
     )
     coriolis = Parameter(

@@ -12,8 +12,8 @@ from typing import Any
 
 import casadi as ca
 
-from ..craft.context import Context, wrench
 from ..craft.symbolic import skew
+from ..craft.terms.context import Context, wrench
 from .coefficients import Part
 
 Point = tuple[Any, Any]

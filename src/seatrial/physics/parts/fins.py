@@ -13,7 +13,7 @@ from typing import Any
 
 import casadi as ca
 
-from ..craft.context import Context, smooth_step, wrench
+from ..craft.terms.context import Context, smooth_step, wrench
 from .flow import STILL, through_water
 from .lift import lift_slope
 

@@ -11,10 +11,10 @@ import casadi as ca
 from ...model.component import Input, Parameter, Terminal
 from ...model.plant import State
 from ...model.ports import Output
-from ..craft.hydrodynamics import TERMS
 from ..craft.marine_craft import MarineCraft
 from ..craft.six_dof import craft_context, six_dof_motion
 from ..craft.surrounded import Surroundings
+from ..craft.terms.hydrodynamics import TERMS
 from .ballast import ballasted, points, surface_weight, volumes
 from .checks import require_parts
 from .coefficients import SORTS, Coefficients, fitted

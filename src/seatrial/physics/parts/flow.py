@@ -7,7 +7,7 @@ from typing import Any
 
 import casadi as ca
 
-from ..craft.context import Context
+from ..craft.terms.context import Context
 
 STILL = 1e-20
 """m/s: keeps derivatives finite where nothing flows."""

@@ -8,7 +8,7 @@ from typing import Any
 
 import casadi as ca
 
-from ..craft.context import Context
+from ..craft.terms.context import Context
 from .coefficients import Part
 from .fins import fin, linear_fin
 from .rudder import rudder

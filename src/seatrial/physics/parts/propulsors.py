@@ -7,7 +7,7 @@ from typing import Any
 
 import casadi as ca
 
-from ..craft.context import Context
+from ..craft.terms.context import Context
 from .coefficients import Part
 from .flow import through_water
 from .screws import four_quadrant, propeller, wageningen_b

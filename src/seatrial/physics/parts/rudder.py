@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 
 import casadi as ca
 
-from ..craft.context import Context, wrench
+from ..craft.terms.context import Context, wrench
 from .fins import upright
 from .flow import STILL, through_water
 from .thrust import Push

@@ -7,8 +7,8 @@ from typing import Any
 
 import casadi as ca
 
-from ..craft.context import Context, wrench
 from ..craft.foils import foil_load
+from ..craft.terms.context import Context, wrench
 from ..foils import sail_naca0015
 
 

@@ -16,7 +16,7 @@ from typing import Any
 
 import casadi as ca
 
-from ..craft.context import Context, wrench
+from ..craft.terms.context import Context, wrench
 from .flow import STILL, held
 from .thrust import Drive, Push
 from .wageningen import wageningen_b as series

@@ -12,7 +12,7 @@ from typing import Any
 
 import casadi as ca
 
-from ..craft.context import Context, wrench
+from ..craft.terms.context import Context, wrench
 from .flow import STILL
 
 _SMALL = 1e-12

@@ -16,7 +16,7 @@ from ...fmi.interfaces.loaded import LoadedFmu
 from ...fmi.loading.built import with_library
 from ...fmi.loading.load import open_instance
 from ...model.component import NS
-from ...system.assembly import assemble
+from ...system.assembling.assembly import assemble
 from ...system.flattening import load_rig
 from ..instants import interval
 from ..master import Master

@@ -6,7 +6,7 @@ from ...errors import InputError, unknown
 from ...fmi.direct import DirectInstance
 from ...model.component import Component
 from ...system.parameters import Vehicle
-from ...system.values import from_entry, port_names, port_scalars
+from ...system.references.values import from_entry, port_names, port_scalars
 
 
 def parametrise(component: Component, vehicle: Vehicle, table: str, variant: str | None) -> None:

@@ -7,8 +7,8 @@ from typing import Any
 
 from ...errors import InputError
 from ...system.files import FileModel
+from ...system.references.values import from_written
 from ...system.system import System
-from ...system.values import from_written
 
 Quantity = float | str
 _MARK = "seabed_depth"

@@ -12,7 +12,7 @@ from ...physics.sea.current import TIDES
 from ...physics.sea.currents import LAYERS
 from ...physics.sea.parameters import MeetsCurrent, MeetsWaves, MeetsWind
 from ...physics.sea.seastate import SWELLS
-from ...system.assumed import is_at_surface
+from ...system.assembling.assumed import is_at_surface
 from ...system.files import FileModel
 from ...system.system import System
 

@@ -15,9 +15,9 @@ from ...system.files import Source, find_file, read_toml, validated
 from ...system.flattening import load_rig
 from ...system.isolation import KEY_END, isolated_in, isolating
 from ...system.packages import is_package, read_package
+from ...system.references.values import Setting
 from ...system.rig import RIG_TABLES, Isolated, Rig, duration_ns
 from ...system.system import System
-from ...system.values import Setting
 from ..criteria.criteria import Criterion, parse
 from .fault_keys import CHOICES, PREFIX, choices_in, is_choice, with_fault_keys
 from .scenario import Acted, Scenario, events_of, read_scenario

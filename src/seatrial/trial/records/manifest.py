@@ -12,8 +12,8 @@ from ...model.component import seconds
 from ...sim.compiled.choice import is_compiled
 from ...system.files import Source
 from ...system.part import Part
+from ...system.references.values import storable
 from ...system.system import Engine, System
-from ...system.values import storable
 from ..files.trial import Trial
 from .identity import IDENTITY, identity_of_run
 from .program import versions

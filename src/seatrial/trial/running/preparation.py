@@ -11,8 +11,8 @@ from ...errors import InputError, SimulationError, listed
 from ...plugins import service
 from ...sim.master import Master
 from ...sim.recorder import matching, output_names
-from ...system.assembly import assemble
-from ...system.fitted_parts import forgotten
+from ...system.assembling.assembly import assemble
+from ...system.assembling.fitted_parts import forgotten
 from ...system.system import Engine, System
 from ...system.unread import leave_out_unread
 from ..files.naming import by_path, named_components

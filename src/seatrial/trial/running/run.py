@@ -10,8 +10,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from ...sim.master import Master
+from ...system.assembling.shape_ports import MESHES
 from ...system.part import Part
-from ...system.shape_ports import MESHES
 from ...system.system import Engine, System
 from ..criteria.verdict import Verdict
 from ..files.trial import Trial

@@ -16,7 +16,7 @@ from seatrial.errors import InputError, SimulationError, unknown
 from seatrial.model.component import NS
 from seatrial.model.expressions import Vector
 from seatrial.sim.master import Master
-from seatrial.system.assembly import assemble
+from seatrial.system.assembling.assembly import assemble
 from seatrial.system.flattening import load_rig
 from seatrial.system.system import System
 

@@ -9,8 +9,8 @@ from itertools import count
 from pathlib import Path
 
 from seatrial.model.readable import number
-from seatrial.system.entries import Entry
 from seatrial.system.parameters import VehicleFile, load_vehicle
+from seatrial.system.references.entries import Entry
 from seatrial.vehicle_folders import FOLDERS, PILOT, owner
 from seatrial.whole_file import write_whole
 

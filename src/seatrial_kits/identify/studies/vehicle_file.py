@@ -9,8 +9,8 @@ from typing import Any
 
 from seatrial.errors import InputError, unknown
 from seatrial.model.readable import number
-from seatrial.system.entries import DerivedEntry, Entry, WrittenEntry
 from seatrial.system.parameters import Vehicle, VehicleFile, load_vehicle
+from seatrial.system.references.entries import DerivedEntry, Entry, WrittenEntry
 from seatrial.whole_file import write_whole
 
 from .planar_study import PlanarStudy

@@ -18,10 +18,10 @@ from seatrial.sim.master import Master, Snapshot
 from seatrial.sim.rollback import Checkpoint
 from seatrial.system.files import Source
 from seatrial.system.part import Part
+from seatrial.system.references.values import Given
 from seatrial.system.rig import EccoEntry, IterationEntry, Rig, RigFile, Scope
 from seatrial.system.sums import SumInstance
 from seatrial.system.system import Bond, Connection, System
-from seatrial.system.values import Given
 
 Name = tuple[str, str]
 

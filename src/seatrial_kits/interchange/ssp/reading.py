@@ -15,7 +15,7 @@ from seatrial.system.files import Source
 from seatrial.system.flattening import rig_of
 from seatrial.system.packages import PackagedSystem
 from seatrial.system.paths import joined
-from seatrial.system.values import storable
+from seatrial.system.references.values import storable
 
 from .flat import Flat, FlatConnection
 from .graph import Node, Path_

@@ -15,7 +15,7 @@ import numpy as np
 from seatrial.errors import InputError
 from seatrial.fmi.components.table_file import LARGEST
 from seatrial.model.component import NS, seconds
-from seatrial.system.assembly import assemble
+from seatrial.system.assembling.assembly import assemble
 from seatrial.system.flattening import load_rig
 from seatrial.system.part import Part
 from seatrial.system.rig import ComponentEntry, Feed, Rig

@@ -1,0 +1,1 @@
+"""Terms of a hull's hydrodynamics, and the context that they are given."""

@@ -1,0 +1,1 @@
+"""Values of vehicles' files: quantities with units, expressions, and references to each other."""

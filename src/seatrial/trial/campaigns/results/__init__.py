@@ -1,0 +1,1 @@
+"""Results of campaigns: maps, findings, comparisons, pages."""
