@@ -22,7 +22,7 @@ from pathlib import Path
 from typing import Any
 
 from .errors import InputError, unknown
-from .reading import toml_content
+from .files.reading import toml_content
 
 API = 1
 """Version of what kits find in the core. It rises when kits have to change."""

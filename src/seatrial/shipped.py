@@ -6,8 +6,8 @@ from functools import cache
 from pathlib import Path
 
 from .errors import InputError
+from .files.vehicle_folders import FOLDERS, Place, place_in, places_in
 from .kits import OURS, Kit, kits
-from .vehicle_folders import FOLDERS, Place, place_in, places_in
 
 _PACKAGE = Path(__file__).parent
 _CHECKOUT = _PACKAGE.parents[1]

@@ -6,7 +6,7 @@ import math
 import numpy as np
 import pytest
 
-from seatrial.physics.bodies.spheroid import displaced_mass, inertia, lamb
+from seatrial.physics.craft.terms.spheroid import displaced_mass, inertia, lamb
 from seatrial.system.parameters import load_vehicle
 
 from .references import DATA, STATES, assert_met, shipped

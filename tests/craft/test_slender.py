@@ -7,8 +7,8 @@ import pytest
 from scipy.integrate import quad
 
 from seatrial.errors import InputError
-from seatrial.physics.bodies.spheroid import displaced_mass, inertia, lamb
 from seatrial.physics.craft.marine_craft import MarineCraft
+from seatrial.physics.craft.terms.spheroid import displaced_mass, inertia, lamb
 
 
 @pytest.mark.parametrize("ratio", [1.001, 1.04, 1.06, 1.5, 3.0, 8.42, 30.0])

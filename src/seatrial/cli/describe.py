@@ -10,6 +10,7 @@ import typer
 from rich.markup import escape
 
 from ..errors import InputError, unmatched
+from ..files.whole_file import write_whole
 from ..model.readable import number
 from ..plugins import offered
 from ..system.assembling.assembly import assemble
@@ -24,7 +25,6 @@ from ..trial.files.fault_keys import choices_in
 from ..trial.files.naming import by_path, named_components
 from ..trial.files.trial import is_trial, load_trial
 from ..trial.reports.diagram import MOST_DRAWN, diagram
-from ..whole_file import write_whole
 from .answer import answer
 from .options import Autopilot, Choices, Every, Match, Vehicle, changes_of
 from .show import MOST_SHOWN, console, print_more, print_notes

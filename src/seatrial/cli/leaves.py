@@ -10,10 +10,10 @@ from xml.etree import ElementTree
 import typer
 
 from ..errors import InputError, SimulationError
+from ..files.whole_file import write_whole
 from ..printable import printable
 from ..trial.records.ending import is_whole
 from ..trial.running.run import Result
-from ..whole_file import write_whole
 from .show import console, print_notes
 from .statuses import FAILED
 

@@ -10,10 +10,10 @@ import typer
 from rich.markup import escape
 
 from ..errors import InputError, unmatched
+from ..files.reading import toml_content
+from ..files.vehicle_folders import Place
 from ..fmi.components.source import named_sources
-from ..reading import toml_content
 from ..shipped import available_places
-from ..vehicle_folders import Place
 from .answer import answer
 from .show import console
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from ..errors import InputError
-from ..reading import toml_content
+from ..files.reading import toml_content
 from ..shipped import available
 from .show import MOST_SHOWN
 

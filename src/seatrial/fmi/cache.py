@@ -14,7 +14,7 @@ from pathlib import Path
 import platformdirs
 
 from ..errors import InputError
-from ..whole_file import write_whole
+from ..files.whole_file import write_whole
 
 # pythonfmu's binary decodes only %20 of a resource URI and crashes on the rest.
 _SAFE = re.compile(r"[A-Za-z0-9_./\\: -]+")

@@ -77,7 +77,7 @@ def read_fault(text: str, where: str) -> dict[str, Any]:
     Several places are separated by ``+``. Values are numbers, lists, or texts without quotes.
     Raises InputError.
     """
-    from ..reading import toml_content
+    from ..files.reading import toml_content
 
     first, *rest = _split(text)
     place, equals, what = (part.strip() for part in first.partition("="))

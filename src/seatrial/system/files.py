@@ -11,10 +11,10 @@ from typing import Any, TypeVar
 from pydantic import BaseModel, ConfigDict, ValidationError
 
 from ..errors import InputError, unknown
+from ..files.reading import toml_content
+from ..files.vehicle_folders import FOLDERS, PILOT, VEHICLE, Place, has, owner, place_in, stem
 from ..kits import kits
-from ..reading import toml_content
 from ..shipped import available, provided_folders, provided_place, shipped_folder
-from ..vehicle_folders import FOLDERS, PILOT, VEHICLE, Place, has, owner, place_in, stem
 
 Model = TypeVar("Model", bound=BaseModel)
 

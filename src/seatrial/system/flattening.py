@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from ..errors import InputError, unknown
-from ..vehicle_folders import Place, owner, stem
+from ..files.vehicle_folders import Place, owner, stem
 from .files import Source, find_place, read_place, validated
 from .paths import joined
 from .references.own_references import with_owner

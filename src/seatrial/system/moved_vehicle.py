@@ -19,8 +19,8 @@ from pathlib import Path
 from typing import Any
 
 from ..errors import InputError
-from ..reading import toml_content
-from ..vehicle_folders import FOLDERS, PILOT, VEHICLE
+from ..files.reading import toml_content
+from ..files.vehicle_folders import FOLDERS, PILOT, VEHICLE
 from .flattening import load_rig
 from .parameters import load_vehicle
 from .rig import Scope

@@ -10,8 +10,8 @@ from typing import Any
 from pydantic import Field
 
 from ..errors import InputError, unknown
+from ..files.vehicle_folders import owner
 from ..fmi.instance import Variables
-from ..vehicle_folders import owner
 from .files import FileModel, Source, file_bytes, find_file, parsed_toml, validated
 from .references.derived import Entries
 from .references.entries import Resolved, WrittenEntry, written_out

@@ -8,12 +8,12 @@ from pathlib import Path
 
 import numpy as np
 
+from seatrial.files.whole_file import write_whole
 from seatrial.model.readable import number
 from seatrial.trial.reports.figure import Figure
 from seatrial.trial.reports.plots import COLOURS, layout
 from seatrial.trial.reports.report import REPORT, render
 from seatrial.trial.running.output import claim_folder
-from seatrial.whole_file import write_whole
 
 from .heading import GAINS, Gain, HeadingDesign, Locus, least_damping
 

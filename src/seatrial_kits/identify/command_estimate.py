@@ -13,8 +13,8 @@ from rich.table import Table
 from seatrial.cli.answer import answer
 from seatrial.cli.show import console, print_notes, print_table
 from seatrial.errors import InputError
+from seatrial.files.whole_file import write_whole
 from seatrial.model.readable import number
-from seatrial.whole_file import write_whole
 
 from .hull_file import estimate_damping
 from .proposal.particulars import KINDS, option

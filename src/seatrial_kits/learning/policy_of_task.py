@@ -11,10 +11,10 @@ from typing import Any
 
 from seatrial.api.assembling import assembled
 from seatrial.errors import InputError, unknown
+from seatrial.files.whole_file import write_whole
 from seatrial.fmi.direct import DirectInstance
 from seatrial.system.system import System
 from seatrial.trial.criteria import expressions as ex
-from seatrial.whole_file import write_whole
 
 from .policy_file import has_meaning
 from .task import Task

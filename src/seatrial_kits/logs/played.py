@@ -13,6 +13,7 @@ import numpy as np
 from pydantic import Field
 
 from seatrial.errors import InputError, unknown
+from seatrial.files.whole_file import stamp
 from seatrial.fmi.components.table import RESERVED
 from seatrial.fmi.components.table_file import LARGEST
 from seatrial.model.component import NS
@@ -24,7 +25,6 @@ from seatrial.trial.logs.pairing import local_metres
 from seatrial.trial.logs.quantities import QUANTITIES, Column, defaults
 from seatrial.trial.logs.resampling import Trace, served, trace
 from seatrial.trial.logs.steady_clock import from_zero, steady
-from seatrial.whole_file import stamp
 
 KNOWN = "_valid"
 """What the name of the switch beside an output ends with: whether the log knows the value."""

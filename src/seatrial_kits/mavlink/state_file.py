@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import Any
 
 from seatrial.errors import InputError
-from seatrial.reading import json_content
-from seatrial.whole_file import write_whole
+from seatrial.files.reading import json_content
+from seatrial.files.whole_file import write_whole
 
 
 class StateFile:

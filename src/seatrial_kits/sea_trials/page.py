@@ -11,13 +11,13 @@ from pathlib import Path
 from typing import Any
 
 from seatrial.errors import InputError
+from seatrial.files.whole_file import write_whole
 from seatrial.model.readable import number
 from seatrial.trial.campaigns.results.further_page import Written
 from seatrial.trial.records.run_folder import MANIFEST, Run, load_run
 from seatrial.trial.records.run_schema import CAMPAIGN, checked_json
 from seatrial.trial.reports.campaign_report import CAMPAIGN as INDEX
 from seatrial.trial.reports.report import render
-from seatrial.whole_file import write_whole
 
 from .curves import drawn_together, spiral_figure
 from .drawing import rows_of

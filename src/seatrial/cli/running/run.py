@@ -9,9 +9,10 @@ from typing import Annotated, Any
 import typer
 
 from ...errors import InputError, unknown
+from ...files.reading import toml_content
+from ...files.vehicle_folders import FOLDERS, place_in
 from ...links.hardware import allow_devices, allow_network
 from ...plugins import service
-from ...reading import toml_content
 from ...shipped import available
 from ...system.fault_entry import read_fault
 from ...system.packages import is_package
@@ -24,7 +25,6 @@ from ...trial.reports.playing import play
 from ...trial.reports.report import write_report
 from ...trial.running.hooks import Hooks
 from ...trial.running.supervision import run_supervised
-from ...vehicle_folders import FOLDERS, place_in
 from ..answer import answer
 from ..leaves import Leaves, exit_with
 from ..options import (

@@ -10,10 +10,10 @@ from collections.abc import Mapping
 from functools import cache
 
 from ...errors import InputError
+from ...files.reading import toml_content
 from ...kits import is_target, kits
 from ...model.component import Component
 from ...plugins import Registry
-from ...reading import toml_content
 from ...shipped import shipped_folder
 
 _KEYS = {"class", "title"}

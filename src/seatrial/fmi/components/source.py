@@ -16,10 +16,10 @@ from types import ModuleType
 from typing import Any
 
 from ...errors import InputError, unknown
+from ...files.reading import toml_content
 from ...kits import OURS
 from ...model.component import Component
 from ...plugins import service
-from ...reading import toml_content
 from .index import component_class, components, shipped_names, title
 from .table import table_component
 from .table_file import SUFFIXES, frozen_table

@@ -13,8 +13,8 @@ from pathlib import Path
 from typing import Any
 
 from ...errors import InputError, listed
+from ...files.whole_file import stamp
 from ...model.units import conversion, unit
-from ...whole_file import stamp
 from .table import RESERVED, TYPES
 
 SUFFIXES = (".csv", ".parquet")

@@ -17,7 +17,7 @@ from pathlib import Path, PurePosixPath, PureWindowsPath
 from typing import IO
 
 from ...errors import InputError
-from ...whole_file import unused
+from ...files.whole_file import unused
 from ..cache import cache_folder
 
 Members = dict[PurePosixPath, zipfile.ZipInfo]

@@ -19,7 +19,7 @@ from pathlib import Path
 import fmpy
 
 from ...errors import InputError
-from ...whole_file import unused
+from ...files.whole_file import unused
 from ..cache import cache_folder, write_named
 from ..interfaces.loaded import LoadedFmu
 from ..on_demand import compilers_of

@@ -12,10 +12,10 @@ import casadi as ca
 import numpy as np
 
 from ...errors import InputError
+from ...files.whole_file import stamp
 from ...model.component import Parameter
 from ...model.plant import State
 from ...model.ports import Output
-from ...whole_file import stamp
 from ..sea.loads import Response
 from ..sea.memory import GROUPS, MODES, MOTIONS, Memory, memories
 from ..sea.panel_files import read_panels

@@ -6,8 +6,8 @@ from functools import lru_cache
 from pathlib import Path
 
 from ...errors import InputError
+from ...files.whole_file import stamp
 from ...model.component import Component, Parameter
-from ...whole_file import stamp
 from .grid import read_grid
 from .obstacles import read_obstacles
 from .plane import Plane

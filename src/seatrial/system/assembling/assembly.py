@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 
 from ...errors import InputError, unknown
+from ...files.vehicle_folders import FOLDERS
 from ...shipped import is_provided
-from ...vehicle_folders import FOLDERS
 from ..connecting import connect
 from ..loading import load_part
 from ..parameters import Outline

@@ -8,8 +8,8 @@ from dataclasses import replace
 from typing import Any
 
 from ...errors import InputError
+from ...files.vehicle_folders import FOLDERS, VEHICLE
 from ...model.units import quantity
-from ...vehicle_folders import FOLDERS, VEHICLE
 from ..parameters import OWN, ParameterSet, Vehicle, load_vehicle, split_reference
 from ..part import Part
 from ..paths import joined

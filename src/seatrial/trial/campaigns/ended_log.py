@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from ...errors import InputError
-from ...whole_file import write_whole
+from ...files.whole_file import write_whole
 from ..running.resuming import Note, cut_aside, is_whole
 from .ended import Ended
 

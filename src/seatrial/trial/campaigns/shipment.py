@@ -15,7 +15,7 @@ from itertools import product
 from pathlib import Path, PurePosixPath
 
 from ...errors import InputError
-from ...vehicle_folders import FOLDERS
+from ...files.vehicle_folders import FOLDERS
 from ..files.fault_keys import is_choice
 from ..files.trial import Trial
 from ..records.deciding import deciding_files, files_in, found_by_name, named_in, our_folders

@@ -12,9 +12,9 @@ from typing import Any, Literal
 from pydantic import Field
 
 from ...errors import InputError, unknown
+from ...files.reading import json_content, yaml_content
 from ...fmi.instance import Value, Variable
 from ...model.component import NS
-from ...reading import json_content, yaml_content
 from ...sim.actions import action
 from ...system.files import FileModel, Source, validated
 from ...system.rig import LONGEST_S

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from ...errors import InputError
-from ...reading import json_content
+from ...files.reading import json_content
 from ...system.rig import LONGEST_S
 from ..criteria.expressions import FloatArray
 from .ending import is_whole

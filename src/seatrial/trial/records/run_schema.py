@@ -20,8 +20,8 @@ from pydantic import (
 )
 
 from ...errors import InputError
+from ...files.reading import json_content
 from ...model.ports import VIEWS
-from ...reading import json_content
 from ...system.shape import Drawn, carried
 from ..files.map_entry import MapEntry
 

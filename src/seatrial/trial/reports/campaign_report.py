@@ -10,8 +10,8 @@ from typing import Any
 from urllib.parse import quote
 
 from ...errors import InputError
+from ...files.whole_file import write_whole
 from ...model.readable import quantity_text
-from ...whole_file import write_whole
 from ..records import run_schema
 from ..records.run_folder import Run, load_run, read_manifest
 from ..records.run_schema import checked_json

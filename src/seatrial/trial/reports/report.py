@@ -10,11 +10,11 @@ from typing import Any
 
 import numpy as np
 
+from ...files.whole_file import write_whole
 from ...kits import lacking
 from ...model.readable import from_si, number, person_scale
 from ...plugins import Registry
 from ...system.paths import split_axis, split_path
-from ...whole_file import write_whole
 from ..criteria.expressions import FloatArray
 from ..records.run_folder import Run, load_run
 from ..running.convergence import load_convergence

@@ -11,10 +11,10 @@ from pathlib import Path
 from jinja2 import Environment, FileSystemBytecodeCache, FileSystemLoader, StrictUndefined
 from jinja2.bccache import Bucket
 
+from ...files.whole_file import write_whole
 from ...fmi.cache import cache_folder
 from ...kits import kits
 from ...model.readable import number
-from ...whole_file import write_whole
 
 FOLDER = "templates"
 """Beside this module, and beside the manifest of a kit whose pages have templates of their own."""

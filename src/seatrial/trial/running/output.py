@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from ...errors import InputError
-from ...whole_file import write_whole
+from ...files.whole_file import write_whole
 
 _RESERVE = 4096
 """Bytes kept for how a run ends."""

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from ...errors import InputError
-from ...reading import json_content
+from ...files.reading import json_content
 from ..records import run_schema
 from ..records.run_folder import read_manifest
 from ..records.run_schema import checked_json

@@ -5,10 +5,10 @@ from __future__ import annotations
 import math
 from pathlib import Path
 
+from seatrial.files.whole_file import write_whole
 from seatrial.model.readable import number
 from seatrial.trial.reports.plots import Line, Panel, time_figure, track_figure
 from seatrial.trial.reports.report import REPORT, render
-from seatrial.whole_file import write_whole
 
 from .intervals import WITHIN
 from .study import ManoeuvreStudy, Row, Shown

@@ -8,11 +8,11 @@ from collections.abc import Iterator
 from itertools import count
 from pathlib import Path
 
+from seatrial.files.vehicle_folders import FOLDERS, PILOT, owner
+from seatrial.files.whole_file import write_whole
 from seatrial.model.readable import number
 from seatrial.system.parameters import VehicleFile, load_vehicle
 from seatrial.system.references.entries import Entry
-from seatrial.vehicle_folders import FOLDERS, PILOT, owner
-from seatrial.whole_file import write_whole
 
 from ..studies.vehicle_file import VARIANT, table_lines
 from .study import ManoeuvreStudy, Row

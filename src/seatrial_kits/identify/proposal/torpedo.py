@@ -1,7 +1,7 @@
 """Formulas of torpedo-shaped bodies: drag ahead, lift of the body, roll damping.
 
 Lengths in m, the body's axis along x; forces in N. Displaced mass, inertia and Lamb's factors of
-added mass are those of `seatrial.physics.bodies.spheroid`.
+added mass are those of `seatrial.physics.craft.terms.spheroid`.
 """
 
 from __future__ import annotations

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from seatrial.errors import InputError
-from seatrial.physics.bodies import spheroid
+from seatrial.physics.craft.terms import spheroid
 
 from ..damping import friction_line
 from . import torpedo

@@ -7,12 +7,12 @@ from pathlib import Path
 
 import numpy as np
 
+from seatrial.files.whole_file import write_whole
 from seatrial.model.readable import number, person_scale
 from seatrial.trial.criteria.expressions import FloatArray
 from seatrial.trial.reports.figure import Figure
 from seatrial.trial.reports.plots import COLOURS, Line, Panel, layout, time_figure
 from seatrial.trial.reports.report import REPORT, render
-from seatrial.whole_file import write_whole
 
 from .study import Study
 

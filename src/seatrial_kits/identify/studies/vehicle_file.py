@@ -8,10 +8,10 @@ from pathlib import Path
 from typing import Any
 
 from seatrial.errors import InputError, unknown
+from seatrial.files.whole_file import write_whole
 from seatrial.model.readable import number
 from seatrial.system.parameters import Vehicle, VehicleFile, load_vehicle
 from seatrial.system.references.entries import DerivedEntry, Entry, WrittenEntry
-from seatrial.whole_file import write_whole
 
 from .planar_study import PlanarStudy
 from .study import Physical, Study

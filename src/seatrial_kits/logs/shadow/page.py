@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from seatrial.errors import InputError, unknown
+from seatrial.files.whole_file import write_whole
 from seatrial.model.readable import person_scale
 from seatrial.trial.logs.channels import Array
 from seatrial.trial.logs.pairing import motion_signals, run_trace
@@ -18,7 +19,6 @@ from seatrial.trial.records.run_folder import MANIFEST, Run, load_run
 from seatrial.trial.reports.plots import MAX_POINTS, Line, Panel, time_figure, track_figure
 from seatrial.trial.reports.report import render
 from seatrial.trial.running.output import write_json
-from seatrial.whole_file import write_whole
 
 from .preparing import COMPONENT, Prepared
 

@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from seatrial.errors import InputError
+from seatrial.files.whole_file import write_whole
 from seatrial.fmi.components.table_file import LARGEST
 from seatrial.model.component import NS, seconds
 from seatrial.system.assembling.assembly import assemble
@@ -26,7 +27,6 @@ from seatrial.trial.files.trial_file import CriterionEntry
 from seatrial.trial.logs.channels import Array, Log
 from seatrial.trial.logs.common_time import Window
 from seatrial.trial.logs.resampling import Trace
-from seatrial.whole_file import write_whole
 
 from ..played import rows_of
 from .asked import SPEED, YAW, Asked, Traces, traces_of

@@ -9,7 +9,7 @@ from pathlib import Path
 from pymavlink.dialects.v20 import all as mavlink
 
 from seatrial.errors import InputError
-from seatrial.whole_file import write_whole
+from seatrial.files.whole_file import write_whole
 
 from ..vehicle import Vehicle
 from .fence_zones import check_fence

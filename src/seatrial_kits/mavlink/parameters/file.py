@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 
 from seatrial.errors import InputError
-from seatrial.whole_file import write_whole
+from seatrial.files.whole_file import write_whole
 
 Check = Callable[[str, float], float]
 """Returns a parameter's value as it is taken; raises InputError if it does not fit."""

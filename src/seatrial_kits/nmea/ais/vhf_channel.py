@@ -9,13 +9,13 @@ from pathlib import Path
 from typing import Any
 
 from seatrial.errors import InputError, unknown
+from seatrial.files.reading import toml_content
 from seatrial.links.geodesy import Origin
 from seatrial.links.packets.channel import RadioChannel
 from seatrial.links.packets.medium import Medium
 from seatrial.links.parameter_validation import start_date, start_us
 from seatrial.model.component import NS, Component, Parameter
 from seatrial.model.units import quantity
-from seatrial.reading import toml_content
 
 from .codec import to_air
 from .reporting import Schedule

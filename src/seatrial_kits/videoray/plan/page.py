@@ -6,13 +6,13 @@ import csv
 import io
 from pathlib import Path
 
+from seatrial.files.whole_file import write_whole
 from seatrial.model.expressions import Vector
 from seatrial.model.readable import number
 from seatrial.trial.reports.figure import Figure
 from seatrial.trial.reports.plots import COLOURS, layout
 from seatrial.trial.reports.report import REPORT, render
 from seatrial.trial.running.output import claim_folder
-from seatrial.whole_file import write_whole
 
 from .motion import MotionPlan
 

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ....whole_file import write_whole
+from ....files.whole_file import write_whole
 from ...reports.campaign_report import LIBRARY, share_library
 from ...reports.figure import Figure
 from ...reports.plots import FAILED, PASSED, UNEVALUATED, layout

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from ....errors import InputError
-from ....reading import json_content
+from ....files.reading import json_content
 
 ANSWER = "answer.json"
 

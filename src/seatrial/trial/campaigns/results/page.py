@@ -12,7 +12,7 @@ import numpy as np
 from markupsafe import Markup
 
 from ....errors import InputError
-from ....whole_file import write_whole
+from ....files.whole_file import write_whole
 from ...records import run_schema
 from ...records.run_schema import checked_json
 from ...reports.campaign_report import LIBRARY, share_library

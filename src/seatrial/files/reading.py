@@ -7,7 +7,7 @@ import re
 import tomllib
 from typing import Any
 
-from .errors import InputError
+from ..errors import InputError
 
 DEEPEST = 64
 """Tables and lists inside one another."""

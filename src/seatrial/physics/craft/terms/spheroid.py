@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from ...errors import InputError
+from ....errors import InputError
 
 _SLIGHT = 0.3
 """Eccentricity below which the closed forms cancel, and the series is as good as exact."""

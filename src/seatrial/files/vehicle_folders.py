@@ -19,7 +19,7 @@ from functools import reduce
 from pathlib import Path
 from typing import Any
 
-from .errors import InputError
+from ..errors import InputError
 from .reading import toml_content
 
 FOLDERS = "harness/vehicles"

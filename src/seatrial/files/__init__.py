@@ -1,0 +1,1 @@
+"""Files: texts and tables read with clear errors, written whole, and folders of vehicles."""

@@ -1,1 +1,0 @@
-"""Bodies of simple shape: mass, inertia and added mass from main dimensions."""
