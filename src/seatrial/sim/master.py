@@ -37,6 +37,8 @@ if TYPE_CHECKING:
 
 _MOST_STEPS = 256
 """Longest block of compiled steps."""
+_LOOKS = 3
+"""Most looks for arrivals at one point: a flood does not hold the step."""
 
 
 @dataclass(frozen=True)
@@ -155,14 +157,13 @@ class Master:
         In real time a point is due later than its outputs were read: a command that comes
         meanwhile would wait for a whole step. Raises SimulationError.
         """
-        if not self._linked:
-            return
-        before = [*self.signals]
-        for node in self._linked:
-            if self.steps % node.every == 0:
-                self._network.write(node)
+        linked = [node for node in self._linked if self.steps % node.every == 0]
+        for _ in range(_LOOKS if linked else 0):
+            before = [*self.signals]
+            for node in linked:
                 self._network.read(node.chunks)
-        if self.signals != before:
+            if self.signals == before:
+                return
             self._changed()
 
     @property

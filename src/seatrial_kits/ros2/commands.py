@@ -42,6 +42,8 @@ class Commands:
                     kind = ACTUATORS[way].kind
                     key = f"{each.name}.{way}"
                     self.watched[key] = Watched(participant, full, kind, link.timeout, say)
+        self.arrived = participant.arrivals([each.reader for each in self.watched.values()])
+        """Whether messages have come that were not taken in yet."""
 
     @property
     def read(self) -> dict[str, str]:

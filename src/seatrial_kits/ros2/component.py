@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import logging
 import math
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any, ClassVar
 
@@ -125,6 +126,21 @@ class Ros2(Ros2Ports):
         self._direct: dict[str, float] | None = None
         self._received = -1.0
 
+    def read(self, references: Sequence[int], kind: type) -> list[Any]:
+        """Return outputs that follow what has come by now, as `Component.read`."""
+        self._look()
+        return super().read(references, kind)
+
+    def reader(self, references: Sequence[int], kind: type) -> Callable[[], list[Any]]:
+        """Return what does the same as `read`."""
+        own = super().reader(references, kind)
+
+        def read() -> list[Any]:
+            self._look()
+            return own()
+
+        return read
+
     def outputs(self, t: float) -> None:
         """Take in what has come, unless it is awaited, and publish."""
         if self._commands is not None and self._instant_ns() == round(t * NS):
@@ -231,6 +247,10 @@ class Ros2(Ros2Ports):
         self._diagnosed_ns = now_ns + NS
         acting = {} if self._faults is None else self._faults.acting
         self._outlet.put("diagnostics", diagnostics(self, self._names, now_ns, acting), now_ns)
+
+    def _look(self) -> None:
+        if self._commands is not None and self._lockstep is None and self._commands.arrived():
+            self._stale = True
 
     def _receive(self, commands: Commands, t: float) -> None:
         if self._lockstep is None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import Any, ClassVar, Literal
 
@@ -75,6 +75,16 @@ class Participant:
         made = DataReader(self.dds, self.topic(topic, kind, prefix), _quality("volatile", depth))
         self.readers.append(made.guid.bytes)
         return made
+
+    def arrivals(self, readers: Sequence[Any]) -> Callable[[], bool]:
+        """Return what says whether any of the readers has messages that were not taken yet."""
+        from cyclonedds.core import InstanceState, ReadCondition, SampleState, ViewState, WaitSet
+
+        waiting = WaitSet(self.dds)
+        for reader in readers:
+            new = SampleState.NotRead | ViewState.Any | InstanceState.Any
+            waiting.attach(ReadCondition(reader, new))
+        return lambda: waiting.wait(0) > 0
 
     def topic(self, topic: str, kind: str, prefix: str = "rt") -> Any:
         """Return the topic of DDS."""

@@ -83,6 +83,8 @@ class Stepping:
             if observer is not None:
                 observer.at_point(stop_requested)
             stopping = stop_requested() or (observer is not None and observer.stops)
+            if pace is not None:
+                master.meet_arrivals()  # last of all: what comes later waits for the next point
             decided = termination.status() if may_decide else None
             self.links.look()
             over = master.steps >= steps
@@ -210,7 +212,6 @@ class Pace:
         pacer.pause(round((paused - self._paused) * NS))
         self._paused = paused
         lateness = pacer.keep(master.time_ns, stop_requested)
-        master.meet_arrivals()
         if lateness and pacer.policy == "abort":
             spent = {name: t.total_ns - before[name] for name, t in master.step_times.items()}
             slowest = max(spent, key=spent.__getitem__)
