@@ -309,6 +309,24 @@ def test_steers_a_heading():
     assert wanted == pytest.approx([-3.0, 0.7, 4.0])
 
 
+def test_steers_velocities_along_the_body_axes_whatever_the_heading():
+    """A target at right angles: surge does not wait, sway comes up at the acceleration."""
+    found = guidance(
+        mode="guided", target_kind="body", target_heading=math.pi / 2.0, target_speed=0.7,
+        target_sway=0.4, acceleration=0.5, heading=math.pi / 6.0, velocity_n=[1.0, 0.0, 0.0],
+    )  # fmt: skip
+    assert found.get("sway") == pytest.approx(-0.5)  # north is 30 degrees to port of the bow
+    assert found.get("sway_engaged")
+    assert found.get("sway_wanted") == pytest.approx(-0.5 + 0.5 * found.period)
+    for k in range(40):
+        found.advance(k * found.period, found.period)
+    wanted = [found.get(f"{name}_wanted") for name in ("heading", "speed", "sway")]
+    assert wanted == pytest.approx([math.pi / 2.0, 0.7, 0.4])
+    found.set("target_kind", "heading")
+    assert not found.get("sway_engaged")
+    assert found.get("sway_wanted") == 0.0
+
+
 def test_without_a_set_point_it_holds():
     found = guidance((1.0, 2.0), mode="guided", target_position=[90.0, 0.0, 0.0])
     drive(found, 10.0)

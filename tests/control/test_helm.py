@@ -19,6 +19,10 @@ def test_each_axis_is_the_autopilots_or_manual(engaged):
     assert found.get("sway") == -2.0
 
 
+def test_an_autopilot_of_sway_acts_where_nobody_is_at_the_helm():
+    assert started(Helm, **LIMITS, sway_held=6.5).get("sway") == 6.5
+
+
 def test_nobody_at_the_helm_asks_nothing():
     found = started(Helm, **LIMITS, **HELD)
     assert [found.get(name) for name in ("surge", "sway", "yaw_moment", "heave")] == [0.0] * 4

@@ -36,6 +36,8 @@ class _Guided(NamedTuple):
     speed: float = 0.0
     held: tuple[bool, bool, bool] = (False, False, False)
     """Whether the autopilots for speed, heading and depth act."""
+    sway: float = 0.0
+    """Speed to starboard, m/s."""
 
 
 class Guidance(GuidanceOrders):
@@ -50,8 +52,8 @@ class Guidance(GuidanceOrders):
     hold       stay where the mode was set
     guided     position: go there at ``target_speed`` (0: ``cruise_speed``) and stay; velocity:
                steer its direction at its size, depth changing at its down; heading: steer
-               ``target_heading`` at ``target_speed`` at the depth of ``target_position``.
-               Without ``target_valid`` as hold
+               ``target_heading`` at ``target_speed`` at the depth of ``target_position``;
+               body: the same, and ``target_sway`` to starboard. Without ``target_valid`` as hold
     auto       follow leg number ``leg`` from ``leg_from`` to ``leg_to``, then stay there until
                another number comes (`Course`, or a mission service); as hold while it is 0
     return     go to ``home`` and stay
@@ -94,7 +96,9 @@ class Guidance(GuidanceOrders):
     **Speed.** What is wanted times max(turning_speed, cos(heading error)): a craft that turns on
     the spot slows down to turn (turning_speed = 0), one that needs steerage does not (1).
     ``speed_wanted`` changes at ``acceleration``, from the measured speed when the autopilots
-    are engaged. ``speed`` is GNSS's along the bow, V_n cos(psi) + V_e sin(psi).
+    are engaged. ``speed`` is GNSS's along the bow, V_n cos(psi) + V_e sin(psi), ``sway`` that to
+    starboard, V_e cos(psi) - V_n sin(psi). Sway is held with the target body alone, whose speeds
+    do not wait for the heading.
 
     Positions in {n}, m, down positive; headings clockwise from north, rad, ``heading_wanted``
     in [-pi, pi]; speeds over ground along the bow. Distances are horizontal; depths
@@ -143,6 +147,7 @@ class Guidance(GuidanceOrders):
     )
 
     mode = Input("1", f"one of {', '.join(MODES)}", type=str, start="hold", choices=MODES)
+    target_sway = Input("m/s", "guided, body: speed to starboard", optional=True)
     depth = Input("m", "depth, positive down")
     depth_valid = Input("1", "whether the depth is valid", type=bool, start=True)
 
@@ -151,8 +156,12 @@ class Guidance(GuidanceOrders):
     speed_wanted = Output("m/s", "speed wanted over ground along the bow")
     depth_wanted = Output("m", "depth wanted, positive down")
     speed = Output("m/s", "measured speed over ground along the bow")
+    sway_engaged = Output("1", "whether an autopilot for sway acts", type=bool)
+    sway_wanted = Output("m/s", "speed wanted over ground to starboard")
+    sway = Output("m/s", "measured speed over ground to starboard")
 
     _ABLE = ("mode", "armed", "position_valid", "heading_valid", "depth_valid")
+    _TARGET = ("target_kind", "target_valid")
     _GOAL = (
         *("target_kind", "target_valid", "target_position", "leg", "leg_to", "home", "position_n"),
     )
@@ -163,6 +172,8 @@ class Guidance(GuidanceOrders):
         "direct": ("mode", "armed", "heading_valid", "depth_valid", "manual"),
         "heading_wanted": _HEADING,
         "speed_wanted": (*_HEADING, "target_speed", "leg_speed", "velocity_n"),
+        "sway_engaged": (*_ABLE, *_TARGET),
+        "sway_wanted": (*_ABLE, *_TARGET, "target_sway", "velocity_n", "heading"),
         "depth_wanted": (*_STATE, "leg_from", "depth"),
         "state": _STATE,
         "cross_track": _PATH,
@@ -171,7 +182,12 @@ class Guidance(GuidanceOrders):
     }
     terminals: ClassVar = {
         "orders": Terminal(
-            {**ORDERS.members, "nav_speed": "speed_wanted", "nav_depth": "depth_wanted"}
+            {
+                **ORDERS.members,
+                "target_sway": "target_sway",
+                "nav_speed": "speed_wanted",
+                "nav_depth": "depth_wanted",
+            }
         ),
         "sensors": terminal(*SENSED, "depth", "depth_valid"),
         "wanted": terminal(
@@ -184,6 +200,9 @@ class Guidance(GuidanceOrders):
             speed_engaged="engaged__speed",
             heading_engaged="engaged__heading",
             direct_yaw="direct__yaw",
+        ),
+        "wanted_abeam": terminal(
+            speed_wanted="sway_wanted", speed="sway", speed_engaged="sway_engaged"
         ),
     }
 
@@ -207,6 +226,8 @@ class Guidance(GuidanceOrders):
         self.heading_wanted = math.remainder(wanted.heading, math.tau)
         self.speed_wanted, self.depth_wanted = guided.speed, wanted.depth
         self.speed = self._speed()
+        self.sway_engaged, self.sway_wanted = self._sways(guided), guided.sway
+        self.sway = self._sway()
 
     def update(self, t: float, k: int) -> None:
         """Remember the goal, how far it is met, and the age of what was received."""
@@ -221,6 +242,7 @@ class Guidance(GuidanceOrders):
             wanted.heading + self.period * turning,
             guided.speed if guided.held[0] else self._speed(),
             wanted.depth + self.period * sinking,
+            guided.sway if self._sways(guided) else self._sway(),
         ]
         self._remember(guided.decision)
 
@@ -228,7 +250,12 @@ class Guidance(GuidanceOrders):
 
     def _decide(self) -> _Guided:
         here, mode = self._here(), self._checked_mode()
-        heading, speed, depth = self._before or (self.heading, self._speed(), here[2])
+        heading, speed, depth, sway = self._before or (
+            self.heading,
+            self._speed(),
+            here[2],
+            self._sway(),
+        )
         if not self._able():
             return _Guided(Decision(Command(NEUTRAL, self.heading, 0.0, here[2])))
         if mode in PILOTED:
@@ -238,7 +265,12 @@ class Guidance(GuidanceOrders):
             piloted = Decision(Command(MANUAL, heading, 0.0, depth))
             return _Guided(piloted, held=(False, heading_held, depth_held))
         decision = self._ordered(heading, depth)
-        return _Guided(decision, self._ramped(speed, decision.command), (True, True, True))
+        wanted = decision.command
+        if decision.task == ("body",):
+            surge, sway = wanted.speed, self._ramped(sway, self.target_sway)
+        else:
+            surge, sway = self._aligned(wanted), 0.0
+        return _Guided(decision, self._ramped(speed, surge), (True, True, True), sway)
 
     def _able(self) -> bool:
         """Return whether the craft is armed and has the estimates that the mode needs."""
@@ -253,13 +285,21 @@ class Guidance(GuidanceOrders):
             start = start[0], start[1], self.surface_depth
         return super()._goal(task, start, depth)
 
-    def _ramped(self, before: float, wanted: Command) -> float:
-        """Return the speed wanted now, less while the heading is not what is wanted."""
+    def _aligned(self, wanted: Command) -> float:
+        """Return the speed wanted, less while the heading is not what is wanted."""
         aligned = math.cos(wanted.heading - self.heading)
-        goal = wanted.speed * max(self.turning_speed, aligned)
+        goal: float = wanted.speed * max(self.turning_speed, aligned)
+        return goal
+
+    def _ramped(self, before: float, goal: float) -> float:
+        """Return the speed wanted now, on its way to ``goal``."""
         most = self.acceleration * self.period
         ramped: float = before + min(max(goal - before, -most), most)
         return ramped
+
+    def _sways(self, guided: _Guided) -> bool:
+        """Return whether a speed to starboard is held."""
+        return guided.decision.task == ("body",)
 
     def _direct(self, guided: _Guided) -> list[float]:
         """Return the manual control where no autopilot acts."""
@@ -312,3 +352,8 @@ class Guidance(GuidanceOrders):
     def _here(self) -> Point:
         north, east, _ = self.position_n
         return north, east, self.depth if self.depth_control == "on" else 0.0
+
+    def _sway(self) -> float:
+        north, east, _ = self.velocity_n
+        speed: float = east * math.cos(self.heading) - north * math.sin(self.heading)
+        return speed

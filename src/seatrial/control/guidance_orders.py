@@ -15,7 +15,7 @@ from .guidance_path import Point
 
 TASKS = ("hold", "guided", "auto", "return", "loiter")
 """Modes that every guidance has."""
-TARGETS = ("position", "velocity", "heading")
+TARGETS = ("position", "velocity", "heading", "body")
 """Values of the input ``target_kind``."""
 
 MANUAL_AXES = ("surge", "sway", "yaw", "heave")
@@ -229,7 +229,7 @@ class GuidanceOrders(Sampled):
                 heading = math.atan2(east, north) if speed > _SLOWEST else None
                 end = self._placed((0.0, 0.0, depth))
                 return Goal(STEER, end, speed=speed, heading=heading)
-            case "heading":
+            case "heading" | "body":
                 end = self._placed(self.target_position)
                 return Goal(STEER, end, speed=self.target_speed, heading=self.target_heading)
             case "loiter":

@@ -13,12 +13,12 @@ class Helm(Component):
         X = surge_held        engaged.speed      else direct.surge surge_limit
         N = yaw_moment_held   engaged.heading    else direct.yaw moment_limit
         Z = heave_held        engaged.depth      else direct.heave heave_limit
-        Y = direct.sway sway_limit
+        Y = sway_held         + direct.sway sway_limit
 
     ``engaged`` and ``direct`` are those of `Guidance`: of a craft that is not armed nothing is
-    engaged and ``direct`` is 0, so that nothing is asked of the thrusters. ``direct`` is limited
-    to +-1. Body axes; X ahead, Y to starboard, Z down, N; N to starboard positive, N.m.
-    Static.
+    engaged and ``direct`` is 0, so that nothing is asked of the thrusters; while sway is held,
+    ``direct`` is 0 too. ``direct`` is limited to +-1. Body axes; X ahead, Y to starboard, Z down,
+    N; N to starboard positive, N.m. Static.
 
     Defaults: the Hydrone catamaran, which has no sway and no heave.
     """
@@ -33,6 +33,7 @@ class Helm(Component):
     engaged = Input("1", "which autopilots act", type=bool, axes=("speed", "heading", "depth"))
     direct = Input("1", "manual control, -1 to 1", axes=("surge", "sway", "yaw", "heave"))
     surge_held = Input("N", "surge force of the autopilot, positive ahead", optional=True)
+    sway_held = Input("N", "sway force of the autopilot, positive to starboard", optional=True)
     yaw_moment_held = Input("N.m", "yaw moment of the autopilot, positive to starboard")
     heave_held = Input("N", "heave force of the autopilot, positive down", optional=True)
 
@@ -50,10 +51,11 @@ class Helm(Component):
     def outputs(self, t: float) -> None:
         """Choose."""
         limits = self.surge_limit, self.sway_limit, self.moment_limit, self.heave_limit
-        surge, self.sway, moment, heave = (
+        surge, sway, moment, heave = (
             min(max(deflection, -1.0), 1.0) * most
             for deflection, most in zip(self.direct, limits, strict=True)
         )
+        self.sway = self.sway_held + sway
         speed, heading, depth = self.engaged
         self.surge = self.surge_held if speed else surge
         self.yaw_moment = self.yaw_moment_held if heading else moment

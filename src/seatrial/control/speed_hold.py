@@ -18,6 +18,9 @@ class SpeedHold(Sampled):
     the poles about a steady U are those of s^2 + (2 zeta w + (d1 + 2 d2 |U|) / m) s + w^2.
     A steady force (a current, wind) ends up in I. Not ``enabled``: X = 0 and I = 0.
 
+    The same holds a speed to starboard: with mass and drag of sway, ``wanted_abeam`` of `Guidance`
+    and X as sway force.
+
     Speeds m/s over ground, so that a current is taken for a drag that is wrong; X N, positive
     ahead. Not modelled: lags of thrusters and sensors; keep w well below their inverse.
 

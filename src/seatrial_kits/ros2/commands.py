@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
+from seatrial.links.unconnected import is_connected
+
 from .participant import Participant
 from .ports import Ros2Ports
-from .steering import Orders, VelocityOrders, goal_orders, wrench_orders
+from .steering import Orders, VelocityOrders, goal_orders, unfollowed, wrench_orders
 from .thrusters import Actuator, actuators
 from .topics import ACTUATORS, COMMANDED, Names
 from .watched import Watched
@@ -27,7 +29,8 @@ class Commands:
     ) -> None:
         self._say, self._link = say, link
         self._said: set[str] = set()
-        self._velocity = VelocityOrders()
+        self._sways, self._dives = link.full_force[1] > 0.0, is_connected(link.depth)
+        self._velocity = VelocityOrders(sways=self._sways)
         self.watched: dict[str, Watched] = {}
         wrench = (*link.full_force, link.full_moment)
         for key, topic in COMMANDED.items():
@@ -107,8 +110,8 @@ class Commands:
         if key == "cmd_wrench":
             return key, wrench_orders(message.wrench, (*link.full_force, link.full_moment))
         twist = message.twist if key == "cmd_vel_stamped" else message
-        if twist.linear.y:
-            self._once(f"{valid[key].name}: linear.y is not followed: this pilot has no sway")
+        for why in unfollowed(twist, sways=self._sways, dives=self._dives):
+            self._once(f"{valid[key].name}: {why}")
         return "cmd_vel", self._velocity.orders(twist, link.period)
 
     def _value(self, actuator: Actuator, now: float) -> float | None:

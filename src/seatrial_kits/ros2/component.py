@@ -161,7 +161,7 @@ class Ros2(Ros2Ports):
         self.mode, self.manual = orders.mode, orders.manual
         self.target_kind, self.target_valid = orders.target_kind, orders.target_valid
         self.target_position, self.target_heading = orders.target_position, orders.target_heading
-        self.target_speed = orders.target_speed
+        self.target_speed, self.target_sway = orders.target_speed, orders.target_sway
         self.leg_reached = self._reached
         if self._commands is not None:
             self.refused, self.late = self._commands.refused, self._commands.late

@@ -7,10 +7,11 @@ in the store, each with the header that rmw_cyclonedds puts before the fields. A
 
 from __future__ import annotations
 
+import os
 from functools import cache
 from typing import Any
 
-from seatrial.errors import InputError
+from seatrial.errors import InputError, unknown
 
 from .interfaces import INTERFACES
 
@@ -19,20 +20,31 @@ _NO_FIELDS = "uint8 structure_needs_at_least_one_member\n"
 """Of a message without any, as rosidl has it."""
 _HEADER = "uint64 client_guid\nint64 sequence_number\n"
 _PARTS = ("_Request", "_Response")
+_WITHOUT_NODES = ("ROS2_DASHING", "ROS2_ELOQUENT")
+"""Distributions whose nodes are announced otherwise."""
 
 
 @cache
 def type_store() -> Any:
-    """Return the store of ROS 2 Humble's types, with those of `INTERFACES`.
+    """Return the store of the types of ROS_DISTRO, else Humble's, with those of `INTERFACES`.
 
-    The fields of those messages are the same in later distributions. Raises InputError without
-    the package rosbags.
+    From Iron on, identifiers of nodes have 16 bytes, not 24, and a Range has a variance. Raises
+    InputError without the package rosbags, and for a distribution that it has not.
     """
     try:
         from rosbags.typesys import Stores, get_types_from_msg, get_typestore
     except ImportError:
         raise InputError(f"ROS 2 needs rosbags, which is not installed: {INSTALL}") from None
-    store = get_typestore(Stores.ROS2_HUMBLE)
+    stores = {
+        each.value.removeprefix("ros2_"): each
+        for each in Stores
+        if each.value.startswith("ros2_") and each.name not in _WITHOUT_NODES
+    }
+    stores["rolling"] = Stores.LATEST
+    distribution = os.environ.get("ROS_DISTRO", "") or "humble"
+    if distribution not in stores:
+        raise InputError(f"ROS_DISTRO: {unknown('distribution', distribution, stores)}")
+    store = get_typestore(stores[distribution])
     found: dict[str, Any] = {}
     for name, text in INTERFACES.items():
         package, group, short = name.split("/")

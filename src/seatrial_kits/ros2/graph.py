@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
+from functools import cache
+
+from .definitions import type_store
 from .packing import packed
 from .participant import Participant, Writer
 
 KIND = "rmw_dds_common/msg/ParticipantEntitiesInfo"
-_GID = 24
-"""Bytes of an identifier in Humble, of which DDS has the first 16."""
+_GID = "rmw_dds_common/msg/Gid"
 
 
 class Graph:
     """Announces one node, which has all readers and writers of its participant.
 
     ``name`` is the node's name in full, ``/seatrial``. The topic is ``ros_discovery_info``, without
-    the prefix of topics of nodes, as rmw_dds_common of Humble has it.
+    the prefix of topics of nodes, as rmw_dds_common has it.
     """
 
     def __init__(self, participant: Participant, name: str) -> None:
@@ -40,4 +42,11 @@ class Graph:
 
 
 def _gid(identity: bytes) -> dict[str, bytes]:
-    return {"data": identity.ljust(_GID, b"\0")}
+    return {"data": identity.ljust(_gid_length(), b"\0")}
+
+
+@cache
+def _gid_length() -> int:
+    """Return the bytes of an identifier, of which DDS has the first 16: up to Humble 24."""
+    ((_, (_, (_, length))),) = type_store().fielddefs[_GID][1]
+    return int(length)

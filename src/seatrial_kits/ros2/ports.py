@@ -194,12 +194,13 @@ class Ros2Ports(Logging, Reachable, TrueMotion, Sampled):
     mode = Output("1", "mode of the pilot: hold, manual or guided", type=str, start="hold")
     armed = Output("1", "whether the pilot acts", type=bool)
     manual = Output("1", "manual control, -1 to 1", axes=_MANUAL)
-    target_kind = Output("1", "position or heading", type=str, start="position")
+    target_kind = Output("1", "position, heading or body", type=str, start="position")
     target_valid = Output("1", "whether there is a set-point", type=bool)
     target_position = Output("m", "position to go to; its down with a heading", axes=_NED)
     target_velocity = Output("m/s", "velocity over ground", axes=_NED)
     target_heading = Output("rad", "heading, clockwise from north")
     target_speed = Output("m/s", "speed along the bow")
+    target_sway = Output("m/s", "speed to starboard, of a pilot that has sway")
     leg_reached = Output("1", "number of the leg whose end is reached, 0 while none is", type=int)
     failure = Output("1", "fault of each unit, none without", axes=UNITS, type=str, start="none")
     order = Output("1", "simulated time and text of the last order", type=str, role="order")
@@ -221,7 +222,7 @@ class Ros2Ports(Logging, Reachable, TrueMotion, Sampled):
             flap="joint__flap",
         ),
         "motion": MOTION,
-        "orders": terminal(*_ORDERS),
+        "orders": terminal(*_ORDERS, "target_sway"),
         "course": terminal("leg", "leg_from", "leg_to", "leg_radius", "leg_reached"),
         "piloted": Terminal(
             {each: f"piloted_pulse.{each}" for each in CHANNELS}

@@ -26,17 +26,20 @@ class Orders:
     target_position: tuple[float, float, float] = (0.0, 0.0, 0.0)
     target_heading: float = 0.0
     target_speed: float = 0.0
+    target_sway: float = 0.0
 
 
 class VelocityOrders:
-    """A Twist as a heading that turns, a speed along the bow, and a depth that changes.
+    """A Twist as a heading that turns, speeds ahead and abeam, and a depth that changes.
 
     psi' = -angular.z, z' = -linear.z, from those of the vehicle when the command began; the
-    heading wanted is at most 60 degrees ahead of the vehicle's. Once per instant it is told what
-    is measured; orders may be asked for again as commands come.
+    heading wanted is at most 60 degrees ahead of the vehicle's. A pilot that ``sways`` gets
+    -linear.y as speed to starboard. Once per instant it is told what is measured; orders may be
+    asked for again as commands come.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, *, sways: bool) -> None:
+        self._sways = sways
         self._heading = self._depth = 0.0
         self._begun: tuple[float, float] | None = None
         """Heading and depth wanted at the last instant; None without a command."""
@@ -60,12 +63,26 @@ class VelocityOrders:
         self._wanted = heading, depth
         return Orders(
             "guided",
-            target_kind="heading",
+            target_kind="body" if self._sways else "heading",
             target_valid=True,
             target_position=(0.0, 0.0, depth),
             target_heading=math.remainder(heading, math.tau),
             target_speed=float(twist.linear.x),
+            target_sway=-float(twist.linear.y) if self._sways else 0.0,
         )
+
+
+def unfollowed(twist: Any, *, sways: bool, dives: bool) -> list[str]:
+    """Return why parts of a Twist that are not 0 are not followed."""
+    parts = (
+        ("linear.y", twist.linear.y and not sways, "no sway"),
+        ("linear.z", twist.linear.z and not dives, "no depth"),
+        ("angular.x", twist.angular.x, "no roll to turn"),
+        ("angular.y", twist.angular.y, "no pitch to turn"),
+    )
+    return [
+        f"{name} is not followed: this pilot has {why}" for name, is_lost, why in parts if is_lost
+    ]
 
 
 def wrench_orders(wrench: Any, full: tuple[float, ...]) -> Orders:
