@@ -87,6 +87,15 @@ def test_samples_are_heave_and_slopes_at_shares_of_the_period():
     assert control.sample_step() == pytest.approx(2.8 / PER_PERIOD)
 
 
+def test_samples_begin_where_the_first_report_is_lost():
+    flight = Flight(wave_period=2.8)  # a sample every 0.2 s
+    flight.reports = False
+    flight.to(0.03)
+    flight.reports = True
+    control = flight.to(1.0)  # the second report, of 0.05 s, comes between two samples
+    np.testing.assert_allclose(control._samples, [[0.2, 0.0, 0.0]] * 5, atol=1e-9)
+
+
 def test_no_more_than_a_window_of_samples_is_kept():
     flight = Flight(wave_period=0.7)
     control = flight.to(0.5)

@@ -116,7 +116,7 @@ def test_a_name_of_two_kits_is_refused(kit: Callable[..., Path]) -> None:
 def test_a_command_of_two_is_refused(kit: Callable[..., Path]) -> None:
     kit("sonar", SONAR + '[commands]\nrun = { call = "a:b", help = "Run." }\n')
     with pytest.raises(
-        InputError, match=r"the command 'run' is seatrial\.cli\.run:run and, of the"
+        InputError, match=r"the command 'run' is seatrial\.cli\.running\.run:run and, of the"
     ):
         loaded("run")
     assert loaded("doctor").name == "doctor"

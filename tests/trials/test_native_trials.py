@@ -45,6 +45,7 @@ NATIVE = [
     "hydrone-deck-landing-waves",
     "hydrone-deck-limits",
     "hydrone-drone-landing",
+    "hydrone-drone-landing-fault",
     "hydrone-drone-landing-waves",
     "hydrone-landing",
     "hydrone-landing-waves",

@@ -142,6 +142,7 @@ class DeckEstimate(Component):
             if row == 0:
                 self._x, self._P = tracking.first(value)
                 self._at, self._known = at, True
+                self._grid = math.ceil(at / self.sample_step())
             return
         if at < self._at - 1e-6:
             return
@@ -153,8 +154,6 @@ class DeckEstimate(Component):
     def _sample(self) -> None:
         """Keep heave and slopes at multiples of a share of the peak period."""
         step = self.sample_step()
-        if not self._samples:
-            self._grid = math.ceil(self._at / step)
         while self._grid * step <= self._at + 1e-9:
             back = self._grid * step - self._at
             down = self._x[0][2] + self._x[1][2] * back + self._x[2][2] * back * back / 2.0
