@@ -10,7 +10,7 @@ RUN apt-get update && \
 FROM base AS develop
 RUN apt-get update && \
     apt-get install -y --no-install-recommends \
-        arduino-core-avr avr-libc bubblewrap chromium g++ gcc gcc-avr git libelf-dev libpython3-dev \
+        arduino-core-avr avr-libc bubblewrap chromium g++ g++-multilib gcc gcc-avr git libelf-dev libpython3-dev \
         libsimavr-dev npm && \
     rm -rf /var/lib/apt/lists/*
 

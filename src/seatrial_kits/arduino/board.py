@@ -24,11 +24,13 @@ from .toolchain import arduino_core
 
 _EVENT = struct.Struct("<BBHQ")
 _INPUT = struct.Struct("<BBHd")
+_PIECE = struct.Struct("<BBH8s")
 _HEAD = struct.Struct("<IQI")
 _ADDRESSES = re.compile(r" \[at((?: 0x[0-9a-f]+)*)\]")
-UART, EDGE, DUTY, WIDTH, EEPROM, RESET = (ord(letter) for letter in "TPDHeR")
+UART, EDGE, DUTY, WIDTH, EEPROM, RESET, MESSAGE, MORE = (ord(letter) for letter in "TPDHeRMm")
 """Kinds of events: a byte has left a UART; a pin has another level, is modulated with a share, high
-for so long; a byte of the EEPROM has changed; the board has started again."""
+for so long; a byte of the EEPROM has changed; the board has started again; a message
+to a device begins, and goes on."""
 
 _ANSWER_S = 20.0
 """Wall clock: a program that takes this long for one step hangs where it cannot report it."""
@@ -49,6 +51,13 @@ class Inputs:
     def put(self, kind: str, index: int, number: float = 0.0, value: int = 0) -> None:
         """Add one record."""
         self.data += _INPUT.pack(ord(kind), index, value, number)
+
+    def put_message(self, channel: int, message: bytes) -> None:
+        """Add a message to a device: see ``machine/messages.h``."""
+        self.put("M", channel, value=len(message))
+        for at in range(0, len(message), 8):
+            piece = message[at : at + 8]
+            self.data += _PIECE.pack(ord("m"), channel, len(piece), piece)
 
 
 Answer = Callable[[int, int, int, int, bytes], "tuple[int, Inputs]"]

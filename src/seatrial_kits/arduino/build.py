@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import shlex
 import subprocess
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from seatrial.errors import InputError
@@ -21,9 +21,45 @@ from .unsupported import advice, missing_headers, unsupported
 
 _LINES = 120
 """Of compilers' errors that a message has."""
-_CORE = ("machine", "uarts", "api", "avr_libc", "texts", "devices")
+_MACHINE = ("machine", "uarts", "texts")
 _BASE = ("-std=gnu++17", "-gdwarf-4", "-w", "-fpermissive", "-fno-pie", "-ffp-contract=off")
-_SKETCH = ("-O1", "-fsingle-precision-constant", "-fsanitize-coverage=trace-pc")
+_SKETCH = ("-O1", "-fsanitize-coverage=trace-pc")
+
+
+@dataclass(frozen=True)
+class Family:
+    """How the sketches of a family of boards are compiled: its API is in ``folder``."""
+
+    folder: str
+    core: tuple[str, ...]
+    """Its sources."""
+    base: tuple[str, ...]
+    sketch: tuple[str, ...]
+    narrows: bool
+    """Whether int has 16 bits there: see `dialect`."""
+    backend: str
+    """Its tools in `toolchain`."""
+
+
+FAMILIES = {
+    "avr": Family(
+        "core",
+        ("api", "avr_libc", "devices"),
+        (),
+        ("-fsingle-precision-constant", "-include", "sketch.h"),
+        narrows=True,
+        backend="host",
+    ),
+    # A computer's 32 bits are this board's: int, long, pointers and size_t; char has no sign.
+    "esp32": Family(
+        "esp32",
+        ("api", "devices", "network", "pulses", "queues", "storage", "tasks", "timers", "twai"),
+        ("-m32", "-msse2", "-mfpmath=sse", "-funsigned-char", "-fasynchronous-unwind-tables"),
+        ("-malign-double",),
+        narrows=False,
+        backend="host for ESP32",
+    ),
+}
 
 
 def build_host(sketch: Sketch, mcu: Mcu) -> Path:
@@ -32,9 +68,10 @@ def build_host(sketch: Sketch, mcu: Mcu) -> Path:
     Raises InputError for what is unsupported and for what the compiler finds, with the
     sketch's files and lines.
     """
-    need("host")
-    whole = narrowed(sketch.merged())
-    key = [mcu, version("g++"), TEXTS, whole, _BASE, _SKETCH, sketch.flags]
+    family = FAMILIES[mcu.family]
+    need(family.backend)
+    whole = sketch.merged()
+    key = [mcu, family, version("g++"), TEXTS, whole, _BASE, _SKETCH, sketch.flags]
     key.append(contents(sketch.files()))
     return cached(
         f"host-{sketch.name}", key, "", lambda file, scratch: _host(sketch, mcu, file, scratch)
@@ -42,27 +79,34 @@ def build_host(sketch: Sketch, mcu: Mcu) -> Path:
 
 
 def _host(sketch: Sketch, mcu: Mcu, file: Path, scratch: Path) -> None:
-    place = laid_out()
+    family = FAMILIES[mcu.family]
     sketch = with_used_libraries(sketch, _includer(sketch, mcu), scratch / "whole.cpp")
-    missing = missing_headers(sketch, _includer(sketch, mcu), scratch / "whole.cpp")
-    refuse("host", sketch, [*missing, *unsupported(sketch)])
-    common = ["g++", *_BASE, *mcu.defines, f"-I{place / 'core'}", f"-I{place / 'shared'}"]
-    objects = [_core_object(name, mcu, common) for name in _CORE]
-    sources, places = _narrowed_copy(sketch, scratch)
-    includes = [f"-I{each}" for each in places] + ["-include", str(place / "core" / "sketch.h")]
-    command = [*common, *_SKETCH, *sketch.flags, *includes]
+    missing = missing_headers(sketch, _includer(sketch, mcu), scratch / "whole.cpp", mcu.family)
+    refuse("host", sketch, [*missing, *(unsupported(sketch) if family.narrows else [])], mcu.family)
+    common = _compiler(mcu)
+    objects = [_core_object("machine", name, mcu, common) for name in _MACHINE]
+    objects += [_core_object(family.folder, name, mcu, common) for name in family.core]
+    sources, places = (_narrowed_copy if family.narrows else _as_it_is)(sketch, scratch)
+    includes = [f"-I{each}" for each in places]
+    command = [*common, *_SKETCH, *family.sketch, *sketch.flags, *includes]
     theirs = {scratch / f"{number}.o": source for number, source in enumerate(sources)}
-    run_all([[*command, "-c", str(f), "-o", str(o)] for o, f in theirs.items()], sketch)
+    run_all([[*command, "-c", str(f), "-o", str(o)] for o, f in theirs.items()], sketch, mcu.family)
     objects += theirs
-    link = ["g++", "-no-pie", *map(str, objects), "-lpthread", "-o", str(file)]
-    run(link, sketch.name)
+    link = ["g++", *family.base, "-no-pie", *map(str, objects), "-lpthread", "-o", str(file)]
+    run(link, sketch.name, mcu.family)
 
 
 def _includer(sketch: Sketch, mcu: Mcu) -> list[str]:
     """Return the command that finds what a source of a sketch includes."""
-    core = laid_out() / "core"
-    places = [f"-I{f}" for f in (core, *include_folders(sketch))]
-    return ["g++", *_BASE, *mcu.defines, *sketch.flags, *places]
+    places = [f"-I{f}" for f in include_folders(sketch)]
+    return [*_compiler(mcu), *sketch.flags, *places]
+
+
+def _compiler(mcu: Mcu) -> list[str]:
+    """Return the compiler with what all sources of a board's program have."""
+    family, place = FAMILIES[mcu.family], laid_out()
+    places = [f"-I{place / each}" for each in (family.folder, "machine", "shared")]
+    return ["g++", *_BASE, *family.base, *mcu.defines, *places]
 
 
 def include_folders(sketch: Sketch) -> list[Path]:
@@ -94,14 +138,21 @@ def with_used_libraries(sketch: Sketch, command: list[str], main: Path) -> Sketc
     return replace(sketch, libraries=tuple(f for f in sketch.libraries if f in used))
 
 
-def _core_object(name: str, mcu: Mcu, common: list[str]) -> Path:
-    source = laid_out() / "core" / f"{name}.cpp"
-    key = [mcu, version("g++"), TEXTS, _BASE]
+def _core_object(folder: str, name: str, mcu: Mcu, common: list[str]) -> Path:
+    source = laid_out() / folder / f"{name}.cpp"
+    key = [mcu, version("g++"), TEXTS, common]
 
     def make(file: Path, scratch: Path) -> None:
         run([*common, "-O2", "-c", str(source), "-o", str(file)], name)
 
     return cached(f"core-{name}", key, ".o", make)
+
+
+def _as_it_is(sketch: Sketch, scratch: Path) -> tuple[list[Path], list[Path]]:
+    """Write the joined tabs; return what to compile, and folders of headers."""
+    main = scratch / f"{sketch.name}.ino.cpp"
+    write_source(main, sketch.merged())
+    return [main, *sketch.others, *sketch.library_sources()], include_folders(sketch)
 
 
 def _narrowed_copy(sketch: Sketch, scratch: Path) -> tuple[list[Path], list[Path]]:
@@ -127,30 +178,30 @@ def _narrowed_copy(sketch: Sketch, scratch: Path) -> tuple[list[Path], list[Path
     return sources, [*places, *(place.parent for place in places[1:])]
 
 
-def run(command: list[str], name: str) -> None:
+def run(command: list[str], name: str, family: str = "avr") -> None:
     """Run a compiler. Raises InputError with its output, if it refuses."""
-    if output := _refusal(command):
+    if output := _refusal(command, family):
         raise InputError(f"{name} does not compile:\n{output}")
 
 
-def run_all(commands: list[list[str]], sketch: Sketch) -> None:
+def run_all(commands: list[list[str]], sketch: Sketch, family: str) -> None:
     """Compile the sources of a sketch. Raises InputError with what is wrong with any of them."""
-    outputs = [output for command in commands if (output := _refusal(command))]
+    outputs = [output for command in commands if (output := _refusal(command, family))]
     if outputs:
         output = "\n".join("\n".join(outputs).splitlines()[:_LINES])
-        more = [target_text(sketch)] if is_foreign(sketch) else []
+        more = [target_text(sketch, family)] if is_foreign(sketch, family) else []
         raise InputError("\n".join([f"{sketch.name} does not compile:", output, *more]))
 
 
-def refuse(backend: str, sketch: Sketch, problems: list[str]) -> None:
+def refuse(backend: str, sketch: Sketch, problems: list[str], family: str) -> None:
     """Raise InputError if there are problems, with the board that a sketch is for."""
     if problems:
-        target = target_text(sketch)
+        target = target_text(sketch, family)
         head = f"{sketch.name} cannot run in the back end {backend!r}:"
         raise InputError("\n".join([head, *problems, *([f"it is {target}"] if target else [])]))
 
 
-def _refusal(command: list[str]) -> str:
+def _refusal(command: list[str], family: str) -> str:
     """Run a compiler; return its errors with what to do about them, '' if there are none."""
     done = subprocess.run(
         command,
@@ -163,4 +214,4 @@ def _refusal(command: list[str]) -> str:
     if not done.returncode:
         return ""
     output = "\n".join(done.stderr.splitlines()[:30]) or f"{command[0]} ended ({done.returncode})"
-    return "\n".join([output, *advice(output)])
+    return "\n".join([output, *advice(output, family)])

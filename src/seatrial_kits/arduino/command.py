@@ -14,13 +14,13 @@ from seatrial.errors import InputError
 from seatrial.printable import printable
 from seatrial.system.profile.profile import load_profile
 
+from .boards import board_mcu
 from .build import build_host
 from .component import Arduino
-from .dialect import LIMITS
 from .emulator import build_emulator, build_firmware
 from .libraries import read_source
+from .limits import LIMITS
 from .mcus import MCUS, Mcu
-from .platformio import project_mcu
 from .sketch import Sketch, find_sketch
 from .target_board import target_text
 from .wiring import Wire, read_uarts, read_wires
@@ -33,7 +33,7 @@ _SOFT = ("soft_rx", "soft_tx")
 _SERIAL = re.compile(r"\bSerial([123]?)\s*\.\s*begin\s*\(\s*(\d*)")
 _FOLDER = Annotated[str, typer.Argument(metavar="SKETCH", help="A sketch's folder or .ino.")]
 _BACKEND = Annotated[str, typer.Option(help="'host' or 'simavr'.")]
-_MCU = Annotated[str, typer.Option(help="atmega2560 or atmega328p.")]
+_MCU = Annotated[str, typer.Option(help="atmega2560, atmega328p, esp32, esp32s3 or esp32c3.")]
 _PROFILE = Annotated[str, typer.Option(help="PROFILE:LINK whose parameters to use: gloria:mega.")]
 _LIBRARIES = Annotated[str, typer.Option(help="Folders of libraries, from the sketch's on; with ;")]
 _ENVIRONMENT = Annotated[str, typer.Option(help="Environment of platformio.ini (default_envs).")]
@@ -76,7 +76,7 @@ def check(
     """Check a sketch: its parts, unsupported calls, and its lines against a profile."""
     values = _values(profile, mcu=mcu, libraries=libraries, flags=flags, environment=environment)
     found = _found(sketch, values)
-    board = _mcu(found, values)
+    board = _mcu(sketch, values)
     print(printable(f"{found.name} on the {board.board} ({board.name})"))
     if project := found.project:
         print(printable(f"  environment {project.environment}, board {project.board}"))
@@ -91,11 +91,11 @@ def check(
             print(printable(f"  {kind} {file}"))
     for wire in read_wires(values.get("wires", ""), board):
         print(printable(f"  {wire}"))
-    if target := target_text(found):
+    if target := target_text(found, board.family):
         print(printable(f"  {target}"))
     if _checked_backend(backend) == "host":
         print("what the back end 'host' does not show:")
-        for limit in LIMITS:
+        for limit in LIMITS[board.family]:
             print(printable(f"  {limit}"))
     problems = _lines(found, values)
     try:
@@ -120,7 +120,7 @@ def build(
     """Build a sketch, and say where the program or the firmware is."""
     values = _values(profile, mcu=mcu, libraries=libraries, flags=flags, environment=environment)
     found = _found(sketch, values)
-    board = _mcu(found, values)
+    board = _mcu(sketch, values)
     print(_built(found, board, _checked_backend(backend)))
 
 
@@ -164,11 +164,11 @@ def run(
         board.close()
 
 
-def _mcu(sketch: Sketch, values: dict[str, Any]) -> Mcu:
-    """Return the microcontroller, a project's if there is one; keep it in the values."""
-    if sketch.project is not None:
-        values["mcu"] = project_mcu(sketch.project, values["mcu"])
-    return MCUS[values["mcu"]]
+def _mcu(place: str, values: dict[str, Any]) -> Mcu:
+    """Return the microcontroller of a sketch's board; keep it in the values."""
+    found = board_mcu(place, values.get("environment", ""), values["mcu"])
+    values["mcu"] = found.name
+    return found
 
 
 def _built(sketch: Sketch, board: Mcu, backend: str) -> Path:

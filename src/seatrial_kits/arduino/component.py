@@ -2,33 +2,31 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, ClassVar
 
 from seatrial.errors import InputError
-from seatrial.links.earth_field import earth_field
 from seatrial.links.endpoints.endpoint import Endpoint, report
 from seatrial.links.endpoints.url import other_end
-from seatrial.links.parameter_validation import start_us
 from seatrial.links.text import Inbox, Outbox
 from seatrial.model.component import NS, Component
 
-from .board import DUTY, EDGE, EEPROM, RESET, UART, WIDTH, Board, Event, Inputs
+from .board import DUTY, EDGE, EEPROM, MESSAGE, MORE, RESET, UART, WIDTH, Board, Event, Inputs
+from .boards import board_mcu
 from .build import build_host
 from .eeprom import ERASED, read_eeprom, write_eeprom
 from .emulator import build_emulator, build_firmware, firmware_file
-from .mcus import CLOCK, MCUS, Mcu
-from .measuring import check_ports, measured
+from .mcus import CLOCK, Mcu
+from .measuring import check_ports, field_at_home, measured, signals
 from .part import Part, UartPart, part_failed
 from .parts.shelf import part_class
-from .platformio import project_mcu, project_of, read_project
+from .peripherals import Peripherals
+from .platformio import project_of
 from .ports import ArduinoPorts
 from .pulses import Pulses
 from .real_board import RealBoard
 from .sketch import Sketch, find_sketch
-from .wiring import STEPPERS, UARTS, Wire, open_links, read_uarts, read_wires
+from .wiring import STEPPERS, UARTS, open_links, read_uarts, read_wires
 
 _WATCHED = ("servo", "pwm", "output", "step", "direction")
 _SOFT = {"soft_rx": "r", "soft_tx": "t"}
@@ -79,13 +77,15 @@ class Arduino(ArduinoPorts):
     discrete = True
     rolls_back = False
     transient = Component.transient | {
-        *("_board", "_eeprom", "_monitors", "_parts", "_measured", "_pulses", "_wires", "_field_n")
+        *("_board", "_eeprom", "_monitors", "_parts", "_measured", "_pulses", "_wires", "_field_n"),
+        *("_mcu", "_peripherals"),
     }
 
     def __init__(self, name: str = "component") -> None:
         super().__init__(name)
         self._board: Board | RealBoard | None = None
         self._off = False
+        self._peripherals: Peripherals | None = None
         self._monitors: dict[int, Endpoint] = {}
         self._parts: list[Part] = []
 
@@ -95,13 +95,14 @@ class Arduino(ArduinoPorts):
         """Build what is to run, and connect the wires."""
         self.close()
         try:
-            mcu = self._board_mcu()
+            self._mcu = mcu = self._board_mcu()
             self._wires = read_wires(self.wires, mcu)
             there = {*range(mcu.uarts), *(w.number for w in self._wires if w.kind in _SOFT)}
             self._rates = {k: v for k, v in read_uarts(self.uarts).items() if k in there}
             self._eeprom = read_eeprom(self.eeprom, mcu)
-            self._field_n = self._field()
+            self._field_n = field_at_home(self)
             self._parts = self._made_parts()
+            self._peripherals = self._made_peripherals()
             self._begin()
             self._monitors = open_links(self.monitors, "monitors")
         except InputError as error:
@@ -123,15 +124,20 @@ class Arduino(ArduinoPorts):
             self._connect(inputs)
         self._put_bytes(inputs)
         self._put_signals(inputs)
+        if self._peripherals:
+            self._peripherals.receive(inputs)
         end_ns = round((t + h) * NS) - self._begun_ns
         self._cycle = end_ns * (CLOCK // 1_000_000) // 1000
         if self._board is not None:
             self._take(self._board.run(self._cycle, inputs))
             self._send_packets()
+        if self._peripherals:
+            self._peripherals.flush()
 
     def outputs(self, t: float) -> None:
         """Publish pulses, levels and bytes."""
         self.tx = [Outbox(memory).text for memory in self._tx]
+        self.can_tx = self._peripherals.can_tx if self._peripherals else ""
         self.reached_at = " ".join(other_end(each.url) for each in self._monitors.values())
         real = self._board if isinstance(self._board, RealBoard) else None
         report(self, [*self._monitors.values(), *(real.endpoints if real is not None else ())])
@@ -160,6 +166,9 @@ class Arduino(ArduinoPorts):
                 write_eeprom(self.eeprom_after, self._eeprom)
             for part in self._parts:
                 part.end()
+        if self._peripherals:
+            self._peripherals.end()
+            self._peripherals = None
         for monitor in self._monitors.values():
             monitor.close()
         self._monitors = {}
@@ -170,14 +179,10 @@ class Arduino(ArduinoPorts):
         return find_sketch(self.sketch, self.libraries, self.flags, self.environment)
 
     def _board_mcu(self) -> Mcu:
-        """Return the microcontroller: a project's, where the sketch is one of PlatformIO."""
-        file = project_of(Path(self.sketch).expanduser()) if self.sketch else None
-        return MCUS[
-            project_mcu(read_project(file, self.environment), self.mcu) if file else self.mcu
-        ]
+        return board_mcu(self.sketch, self.environment, self.mcu)
 
     def _begin(self) -> None:
-        mcu = self._board_mcu()
+        mcu = self._mcu
         if self.backend == "board":
             self._board = RealBoard(
                 self.name, self.links, self.safe_state, self.timeout, self._wires
@@ -190,7 +195,8 @@ class Arduino(ArduinoPorts):
                 raise InputError("firmware needs the back end 'simavr'; 'host' runs a sketch")
             sketch = self._found()
             program = build_host(sketch, mcu)
-            self._board = Board(self.name, program, str(self.patience), answer=self._answer)
+            folder = self._peripherals.folder if self._peripherals else ""
+            self._board = Board(self.name, program, str(self.patience), folder, answer=self._answer)
             return
         firmware = firmware_file(self.firmware) if self.firmware else self._built(mcu)
         pins = ",".join(mcu.ports)
@@ -221,6 +227,7 @@ class Arduino(ArduinoPorts):
         off = bool(self.supply < self.supply_min and self.backend != "board")
         if off and not self._off:
             self._end_board()
+            self._restart_peripherals()
             self._power_on()
         elif self._off and not off:
             self._begin()
@@ -273,7 +280,7 @@ class Arduino(ArduinoPorts):
 
     def _put_signals(self, inputs: Inputs) -> None:
         for wire in self._wires:
-            for key, value in self._signals(wire):
+            for key, value in signals(self, wire, self._mcu):
                 if self._last.get(key) != value:
                     self._last[key] = value
                     inputs.put(*key, value)
@@ -292,6 +299,17 @@ class Arduino(ArduinoPorts):
                     raise
                 except Exception as error:
                     raise part_failed(self.name, part, error) from error
+
+    def _made_peripherals(self) -> Peripherals | None:
+        """Return what an ESP32 has besides; a project's folder ``data`` is in its flash."""
+        if self._mcu.family != "esp32" or self.backend != "host":
+            return None
+        file = project_of(Path(self.sketch).expanduser()) if self.sketch else None
+        return Peripherals(self, file.parent / "data" if file else None)
+
+    def _restart_peripherals(self) -> None:
+        if self._peripherals:
+            self._peripherals.restart()
 
     def _made_parts(self) -> list[Part]:
         """Return the parts at the board's places."""
@@ -314,32 +332,6 @@ class Arduino(ArduinoPorts):
             return part.answer(call, value, cycle, sent)
         except Exception as error:
             raise part_failed(self.name, part, error) from error
-
-    def _signals(self, wire: Wire) -> list[tuple[tuple[str, int], float]]:
-        """Return the records that a wire's signals give: kind and index, value."""
-        kind, n = wire.kind, wire.number - 1
-        if kind == "voltage":
-            return [(("A", self._channel(wire)), self.voltage[n])]
-        if kind == "input":
-            return [(("L", wire.place), float(self.level[n]))]
-        if kind == "receiver":
-            return [(("R", wire.place), self.receiver[n])]
-        if kind == "anemometer":
-            return [(("F", wire.place), max(0.0, wire.factor * self.wind_speed))]
-        if kind == "vane":
-            turn = (self.wind_angle + math.pi) / math.tau % 1.0
-            return [(("A", self._channel(wire)), wire.factor * turn)]
-        return []
-
-    def _field(self) -> Sequence[float]:
-        given: Sequence[float] = self.magnetic_field
-        if any(given):
-            return given
-        home = self.latitude, self.longitude, self.altitude
-        return earth_field(*home, start_us(self.date) * 1e-6)
-
-    def _channel(self, wire: Wire) -> int:
-        return wire.place - self._board_mcu().first_analog
 
     def _radio(self, uart: int) -> Part | None:
         """Return the part whose packets are at the ports of a UART."""
@@ -381,6 +373,9 @@ class Arduino(ArduinoPorts):
                 self._eeprom[value] = index
             elif kind == RESET:
                 self._resets += 1
+                self._restart_peripherals()
+            elif kind in (MESSAGE, MORE) and self._peripherals:
+                self._peripherals.take(event, self._begun_ns)
             elif kind == UART and not self.cut[index]:
                 received[index].append(event)
         for uart, events_of_it in enumerate(received):

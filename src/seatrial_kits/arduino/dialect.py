@@ -6,18 +6,6 @@ import re
 
 from .tokens import Token, tokens
 
-LIMITS = (
-    "products and sums of int are computed with 32 bits: an overflow of 16 bits stays hidden "
-    "until the value is stored",
-    "pointers, size_t and enums have the computer's widths",
-    "double is another word for float, and int for short: what is defined for both, is twice",
-    "code takes about 12 cycles from one jump to the next, whatever it computes: timing of the "
-    "code itself is a guess (simavr counts cycles)",
-    "interrupts come between stretches of code, never within one",
-    "memory is not the board's: a sketch too large for it goes unnoticed (not by simavr's build)",
-)
-"""What the host back end does not show, as `seatrial sketch check` prints it."""
-
 _BINARY = re.compile(r"B[01]{1,8}")
 _SUFFIX = re.compile(r"(?P<number>(?:0[xX][0-9a-fA-F']+|0[bB][01']+|[0-9']+))(?P<suffix>[uUlL]+)")
 _NAMES = {

@@ -27,7 +27,7 @@ _CXX = ("-std=gnu++11", "-fpermissive", "-fno-exceptions", "-fno-threadsafe-stat
 
 def build_emulator(mcu: Mcu) -> Path:
     """Return the program that emulates a board. Raises InputError if its tools are missing."""
-    need("simavr")
+    _need_avr(mcu)
     key = [version("g++"), TEXTS, contents([Path("/usr/include/simavr/sim_avr.h")])]
 
     def make(file: Path, scratch: Path) -> None:
@@ -37,6 +37,16 @@ def build_emulator(mcu: Mcu) -> Path:
         run(["gcc", "-O2", *includes, source, "-lsimavr", "-lm", "-o", str(file)], "simavr's board")
 
     return cached("emulator", key, "", make)
+
+
+def _need_avr(mcu: Mcu) -> None:
+    """Raise InputError for a microcontroller that simavr has not, and for missing tools."""
+    if mcu.family != "avr":
+        raise InputError(
+            f"the back end 'simavr' emulates AVR microcontrollers, not the {mcu.board}: "
+            "the back end 'host' runs a sketch for it"
+        )
+    need("simavr")
 
 
 def firmware_file(firmware: str) -> Path:
@@ -54,7 +64,7 @@ def build_firmware(sketch: Sketch, mcu: Mcu) -> Path:
 
     Raises InputError for what the compiler finds, with the sketch's files and lines.
     """
-    need("simavr")
+    _need_avr(mcu)
     key = [mcu, version("avr-g++"), TEXTS, sketch.merged(), _FLAGS, sketch.flags]
     key.append(contents(sketch.files()))
 
@@ -65,12 +75,16 @@ def build_firmware(sketch: Sketch, mcu: Mcu) -> Path:
         includer = [f"-I{f}" for f in (*include_folders(sketch), *more)]
         command = [*_compiler(main, mcu, sketch.flags), *includer]
         used = with_used_libraries(sketch, command, main)
-        refuse("simavr", sketch, missing_headers(used, command, main))
+        refuse("simavr", sketch, missing_headers(used, command, main, "avr"), "avr")
         includes = [*include_folders(used), *more]
         pins = laid_out() / "avr" / "pins.c"
         theirs = [main, pins, *used.others, *used.library_sources()]
         objects = {scratch / f"{i}.o": f for i, f in enumerate(theirs)}
-        run_all([_compile(f, mcu, used.flags, includes, o) for o, f in objects.items()], sketch)
+        run_all(
+            [_compile(f, mcu, used.flags, includes, o) for o, f in objects.items()],
+            sketch,
+            mcu.family,
+        )
         archives = [_bundled(mcu, sketch.flags), _core(mcu, sketch.flags)]
         link = ["avr-gcc", "-Os", "-Wl,--gc-sections", f"-mmcu={mcu.name}", "-o", str(file)]
         link += [f"-Wl,--wrap={name}" for name in _PINS]

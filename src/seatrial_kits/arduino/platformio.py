@@ -18,6 +18,23 @@ BOARDS = {
         "atmega328p",
     ),
     **dict.fromkeys(("megaatmega2560", "megaADK", "ATmega2560", "blueromega2560"), "atmega2560"),
+    **dict.fromkeys(
+        ("esp32dev", "esp32doit-devkit-v1", "esp32doit-espduino", "nodemcu-32s", "lolin32",
+         "lolin_d32", "lolin_d32_pro", "wemos_d1_mini32", "az-delivery-devkit-v4", "esp-wrover-kit",
+         "esp32cam", "featheresp32", "ttgo-t-beam", "ttgo-lora32-v1", "ttgo-lora32-v2",
+         "ttgo-lora32-v21", "heltec_wifi_lora_32", "heltec_wifi_lora_32_V2", "m5stack-core-esp32",
+         "m5stick-c", "pico32", "firebeetle32", "denky32", "upesy_wroom", "mhetesp32devkit"),
+        "esp32",
+    ),
+    **dict.fromkeys(
+        ("esp32-s3-devkitc-1", "esp32s3box", "lolin_s3", "adafruit_feather_esp32s3",
+         "seeed_xiao_esp32s3", "heltec_wifi_lora_32_V3"),
+        "esp32s3",
+    ),
+    **dict.fromkeys(
+        ("esp32-c3-devkitm-1", "esp32-c3-devkitc-02", "lolin_c3_mini", "seeed_xiao_esp32c3"),
+        "esp32c3",
+    ),
 }  # fmt: skip
 """Microcontrollers that this kit has, by PlatformIO's names of boards."""
 _FAMILIES = {

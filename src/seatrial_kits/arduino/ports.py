@@ -19,6 +19,7 @@ from seatrial.model.component import (
 from seatrial.model.unit_table import STANDARD_GRAVITY
 
 from .mcus import MCUS
+from .network import check_network
 from .sketch import read_flags
 from .wiring import (
     BLOCKS,
@@ -27,10 +28,10 @@ from .wiring import (
     SERVOS,
     STEPPERS,
     UARTS,
+    check_wires,
     read_links,
     read_monitors,
     read_uarts,
-    read_wires,
 )
 
 BACKENDS = ("host", "simavr", "board")
@@ -63,6 +64,19 @@ class ArduinoPorts(Reachable, Component):
         "", "1", "bytes that the EEPROM begins with, a binary file; none: erased", role="file"
     )
     eeprom_after = Parameter("", "1", "binary file for what the EEPROM holds at the end")
+    flash = Parameter(
+        "",
+        "1",
+        "ESP32: folder (littlefs, spiffs, nvs) that its flash begins with",
+        role="file",
+    )
+    flash_after = Parameter("", "1", "ESP32: folder for what the flash holds at the end")
+    network = Parameter(
+        "",
+        "1",
+        "ESP32: address of its WiFi on this machine, as 127.0.0.2; none: it is alone",
+        check=check_network,
+    )
     card = Parameter(
         "", "1", "image that an SD card begins with; none: an empty FAT16 of 32 MiB", role="file"
     )
@@ -72,7 +86,7 @@ class ArduinoPorts(Reachable, Component):
         "",
         "1",
         "PIN KIND NUMBER or PLACE PART NUMBER of all that is connected; with ;",
-        check=read_wires,
+        check=check_wires,
     )
     links = Parameter(
         "",
@@ -128,6 +142,7 @@ class ArduinoPorts(Reachable, Component):
         axes=_UARTS,
         optional=True,
     )
+    can_rx = Input("1", "ESP32: operations from the CAN bus", type=str, role="can", optional=True)
     cut = Input(
         "1", "whether each UART's line is cut, both ways", type=bool, axes=_UARTS, optional=True
     )
@@ -179,6 +194,7 @@ class ArduinoPorts(Reachable, Component):
     level = Input("1", "at digital inputs", type=bool, axes=_axes("i"), optional=True)
 
     tx = Output("1", "bytes that left each UART, as text", type=str, role="bytes", axes=_UARTS)
+    can_tx = Output("1", "ESP32: operations to the CAN bus", type=str, role="can")
     pulse = Output("s", "width of the last servo pulse, 0 for none", axes=_axes("s", SERVOS))
     duty = Output("1", "share of time that PWM outputs are high", axes=_axes("p"))
     output = Output("1", "levels of digital outputs", type=bool, axes=_axes("o"))
@@ -197,6 +213,7 @@ class ArduinoPorts(Reachable, Component):
     terminals: ClassVar = {
         "sensors": terminal("gyro", "accelerometer", "wind_speed", "wind_angle", "depth"),
         "truth": terminal("attitude"),
+        "bus": terminal(tx="can_tx", rx="can_rx"),
         "camera": terminal(
             bearing="sight_bearing",
             size="sight_size",

@@ -11,15 +11,21 @@ from pathlib import Path
 
 import platformdirs
 
-from . import avr, core, shared
+from . import avr, core, esp32, machine, shared
 from .core import avr as core_avr
 from .core import util as core_util
+from .esp32 import driver as esp32_driver
+from .esp32 import freertos as esp32_freertos
 
 _FOLDERS = {
     "avr": avr,
     "core": core,
     "core/avr": core_avr,
     "core/util": core_util,
+    "esp32": esp32,
+    "esp32/driver": esp32_driver,
+    "esp32/freertos": esp32_freertos,
+    "machine": machine,
     "shared": shared,
 }
 

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from itertools import islice
 from pathlib import Path
 
+from .boards import named_board
 from .libraries import included, read_source
 from .sketch import Sketch
 from .tokens import Token, tokens
@@ -43,8 +44,8 @@ _CONDITIONS = {
     "Uno": r"__AVR_ATmega328P__|ARDUINO_AVR_UNO",
 }
 _GUARD = re.compile(r"^\s*#\s*(?:if|ifndef)\b([^\n]*)\n(?:\s*(?://[^\n]*)?\n)*\s*#\s*error\b", re.M)
-_FQBN = re.compile(r"(?:default_fqbn\s*:|\"board\"\s*:\s*\"|fqbn\s*:)\s*\"?([\w.:-]+)")
-_BOARDS = ("Uno", "Mega")
+_BOARDS = {"avr": ("Uno", "Mega"), "esp32": ("ESP32",)}
+"""Of each family of microcontrollers."""
 
 
 def target_boards(sketch: Sketch) -> dict[str, list[str]]:
@@ -54,9 +55,9 @@ def target_boards(sketch: Sketch) -> dict[str, list[str]]:
     words outside conditions. A sketch without any is for every board.
     """
     found: dict[str, list[str]] = {}
-    for file in (sketch.folder / "sketch.yaml", sketch.folder / ".vscode" / "arduino.json"):
-        if file.is_file() and (match := _FQBN.search(file.read_text("utf-8", "replace"))):
-            found.setdefault(_of_fqbn(match[1]), []).append(f"{file.name}: {match[1]}")
+    file_name, fqbn = named_board(sketch.folder)
+    if fqbn:
+        found.setdefault(_of_fqbn(fqbn), []).append(f"{file_name}: {fqbn}")
     for file in [*sketch.tabs, *sketch.own_files()]:
         source = read_source(file)
         for match in _GUARD.finditer(source):
@@ -71,17 +72,21 @@ def target_boards(sketch: Sketch) -> dict[str, list[str]]:
     return {board: list(dict.fromkeys(evidence)) for board, evidence in found.items()}
 
 
-def target_text(sketch: Sketch) -> str:
-    """Return ``for the ESP32 (WiFi.h, ledcSetup)``, '' if nothing says so."""
+def target_text(sketch: Sketch, family: str) -> str:
+    """Return ``for the ESP32 (WiFi.h, ledcSetup)``, '' if nothing says so.
+
+    For a board of another family than the one at hand, its ``mcu`` stands behind.
+    """
     boards = target_boards(sketch)
     parts = [f"{board} ({', '.join(evidence[:4])})" for board, evidence in boards.items()]
-    return f"for the {' or '.join(parts)}" if parts else ""
+    text = f"for the {' or '.join(parts)}" if parts else ""
+    return f"{text}: mcu is esp32 then" if list(boards) == ["ESP32"] and family != "esp32" else text
 
 
-def is_foreign(sketch: Sketch) -> bool:
-    """Return whether all that says for which board a sketch is names others than these."""
+def is_foreign(sketch: Sketch, family: str) -> bool:
+    """Return whether all that says for which board a sketch is names others than the family's."""
     boards = target_boards(sketch)
-    return bool(boards) and not any(board in _BOARDS for board in boards)
+    return bool(boards) and not any(board in _BOARDS[family] for board in boards)
 
 
 def unconditional(source: str) -> str:

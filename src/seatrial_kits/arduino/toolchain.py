@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import shutil
 import subprocess
 import sys
@@ -25,6 +26,8 @@ def missing(backend: str) -> tuple[str, ...]:
     lacks = []
     if shutil.which("g++") is None:
         lacks.append("g++")
+    if backend == "host for ESP32":
+        lacks += [] if _compiles_for_32_bits() else ["g++-multilib"]
     if backend == "simavr":
         lacks += ["gcc-avr"] if shutil.which("avr-g++") is None else []
         lacks += [] if Path("/usr/lib/avr/include").is_dir() else ["avr-libc"]
@@ -32,6 +35,15 @@ def missing(backend: str) -> tuple[str, ...]:
         lacks += [] if _SIMAVR.is_file() else ["libsimavr-dev"]
         lacks += [] if Path("/usr/include/libelf.h").is_file() else ["libelf-dev"]
     return tuple(lacks)
+
+
+def _compiles_for_32_bits() -> bool:
+    command = ["g++", "-m32", "-x", "c++", "-include", "vector", "-o", os.devnull, "-"]
+    source = "int main() {}"
+    try:
+        return not subprocess.run(command, input=source, text=True, capture_output=True).returncode
+    except OSError:
+        return False
 
 
 def need(backend: str) -> None:

@@ -9,6 +9,7 @@ from collections import Counter
 from pathlib import Path
 
 from .libraries import ASSEMBLY, included, read_source
+from .limits import absent
 from .resources import TEXTS
 from .sketch import Sketch
 from .target_board import unconditional
@@ -63,10 +64,11 @@ def unsupported(sketch: Sketch) -> list[str]:
     return problems
 
 
-def advice(output: str) -> list[str]:
+def advice(output: str, family: str) -> list[str]:
     """Return what to do about a compiler's errors, a line each, as far as that is known."""
-    found = [_missing(header) for header in _ABSENT.findall(output)]
-    found += [what for word in _UNDECLARED.findall(output) if (what := _unknown(word))]
+    found = [_missing(header, family) for header in _ABSENT.findall(output)]
+    if family == "avr":
+        found += [what for word in _UNDECLARED.findall(output) if (what := _unknown(word))]
     return list(dict.fromkeys(found))
 
 
@@ -80,7 +82,7 @@ def _unknown(word: str) -> str:
     return f"{word}: {_WORDS[word]}; {_ELSE} leave it out" if word in _WORDS else ""
 
 
-def missing_headers(sketch: Sketch, command: list[str], main: Path) -> list[str]:
+def missing_headers(sketch: Sketch, command: list[str], main: Path, family: str) -> list[str]:
     """Return the headers that are included and not there, a line each: ``FILE:LINE: WHAT``.
 
     ``command`` is the compiler with its options, and ``main`` the file of the joined tabs. The
@@ -100,7 +102,7 @@ def missing_headers(sketch: Sketch, command: list[str], main: Path) -> list[str]
         [f"platformio.ini needs {', '.join(needs)}: 'pio pkg install' brings them"] if needs else []
     )
     return [
-        f"{place}: {_missing(header)}"
+        f"{place}: {_missing(header, family)}"
         for header in dict.fromkeys(absent)
         for place in _includes(sketch, header)[:1]
     ] + (more if absent else [])
@@ -116,8 +118,10 @@ def _includes(sketch: Sketch, header: str) -> list[str]:
     return found or [str(sketch.folder)]
 
 
-def _missing(header: str) -> str:
+def _missing(header: str, family: str = "avr") -> str:
     """Return what to do if there is no such header."""
+    if what := absent(header, family):
+        return f"<{header}>: the back end 'host' of this board has not {what}: leave it out"
     if header.startswith(_HARDWARE):
         return f"<{header}> is of the AVR's hardware: {_ELSE} the Arduino API"
     return (

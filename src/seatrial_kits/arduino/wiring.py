@@ -25,6 +25,7 @@ _NUMBERED = {
     "soft_rx": UARTS - 1,
     "soft_tx": UARTS - 1,
 }
+_ANALOG = ("voltage", "vane")
 _FACTORS = {"anemometer": 1.0, "vane": 5.0}
 """Kinds with a factor, and its default: Hz per m/s; volts of a full circle."""
 
@@ -69,6 +70,19 @@ def read_wires(text: str, mcu: Mcu = MCUS["atmega2560"]) -> list[Wire]:
     return wires
 
 
+def check_wires(text: str) -> None:
+    """Raise InputError, the first board's, for wires that no board can have."""
+    errors = []
+    for mcu in MCUS.values():
+        try:
+            read_wires(text, mcu)
+        except InputError as error:
+            errors.append(error)
+        else:
+            return
+    raise errors[0]
+
+
 def _wire(part: str, mcu: Mcu) -> Wire:
     place, kind, *more = part.split() if " " in part else (part, "")
     if kind not in (*_NUMBERED, *_FACTORS) and not is_part(kind):
@@ -80,6 +94,8 @@ def _wire(part: str, mcu: Mcu) -> Wire:
         if is_part(kind):
             return _part(kind, place, int(more[0]) if more else 0, mcu)
         at = mcu.pin(place)
+        if kind in _ANALOG:
+            mcu.channel(at)
         if kind in _FACTORS:
             return Wire(kind, at, 0, float(more[0]) if more else _FACTORS[kind])
         return Wire(kind, at, _within(int(more[0]), 1, _NUMBERED[kind]))

@@ -34,7 +34,7 @@ build_flags = ${env:mega.build_flags} -DUNO   ; more
 
 [env:esp]
 platform = espressif32 @ 6.5.0
-board = esp32dev
+board = esp32-p4
 lib_deps =
   knolleary/PubSubClient @ ^2.8
   bblanchon/ArduinoJson
@@ -112,7 +112,7 @@ def test_check_names_environment_board_and_flags(project):
 def test_a_board_that_is_not_there_is_named(project):
     done = seatrial("sketch", "check", str(project), "--environment", "esp", cwd=project)
     assert done.returncode == 2
-    assert "the board of [env:esp] is esp32dev (ESP32): uno, " in done.stderr
+    assert "the board of [env:esp] is esp32-p4 (ESP32): uno, " in done.stderr
 
 
 @pytest.mark.parametrize(

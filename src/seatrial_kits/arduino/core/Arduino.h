@@ -13,6 +13,7 @@
 
 #include <string>
 
+#include "board.h"
 #include "avr/interrupt.h"
 #include "avr/pgmspace.h"
 #include "avr/wdt.h"

@@ -1,29 +1,18 @@
-"""The Arduino API in simulated time, in C++."""
+"""The Arduino API of AVR boards in simulated time, in C++."""
 
 DATA_FILES = (
     "Arduino.h",
     "EEPROM.h",
     "HardwareSerial.h",
-    "Print.h",
     "SPI.h",
     "Servo.h",
     "SoftwareSerial.h",
-    "Stream.h",
-    "WString.h",
     "Wire.h",
     "api.cpp",
     "avr_libc.cpp",
     "avr_libc.h",
-    "crashes.h",
+    "board.h",
     "devices.cpp",
-    "machine.cpp",
-    "machine.h",
-    "pins.h",
     "pins_arduino.h",
-    "reset.h",
-    "servos.h",
     "sketch.h",
-    "texts.cpp",
-    "tones.h",
-    "uarts.cpp",
 )

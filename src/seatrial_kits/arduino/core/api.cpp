@@ -62,16 +62,16 @@ int16_t analogRead(uint8_t pin)
 void analogWrite(uint8_t pin, int value)
 {
 #ifdef BOARD_MEGA
-    bool able = (pin >= 2 && pin <= 13) || (pin >= 44 && pin <= 46);
+    bool able = (pin >= 2 && pin <= 13) || (pin >= 44 && pin <= 46), fast = pin == 4 || pin == 13;
 #else
-    bool able = pin == 3 || pin == 5 || pin == 6 || (pin >= 9 && pin <= 11);
+    bool able = pin == 3 || pin == 5 || pin == 6 || (pin >= 9 && pin <= 11), fast = pin == 5 || pin == 6;
 #endif
     charge(100);
     machine::direct(pin, true);
     if (value <= 0 || value >= 255 || !able)
         machine::drive(pin, value >= (able ? 255 : 128));
     else
-        machine::modulate(pin, value);
+        machine::modulate(pin, value / 255.0, machine::CLOCK / (fast ? 976.5625 : 490.196));
 }
 
 uint32_t pulseIn(uint8_t pin, uint8_t level, uint32_t timeout)
@@ -137,19 +137,18 @@ void noTone(uint8_t pin) { charge(80); machine::hush(pin); }
 
 int16_t digitalPinToInterrupt(int pin)
 {
-#ifdef BOARD_MEGA
-    const int found[] = {2, 3, 21, 20, 19, 18};
-#else
-    const int found[] = {2, 3};
-#endif
-    for (int i = 0; i < (int)(sizeof found / sizeof *found); i++)
-        if (found[i] == pin)
-            return (int16_t)i;
-    return NOT_AN_INTERRUPT;
+    return (int16_t)board::interrupt_of(pin);
 }
 
-void attachInterrupt(uint8_t number, void (*handler)(), int mode) { charge(40); machine::on_edge(number, handler, mode); }
-void detachInterrupt(uint8_t number) { charge(40); machine::on_edge(number, nullptr, 0); }
+static void call(void *handler) { ((void (*)())handler)(); }
+
+void attachInterrupt(uint8_t number, void (*handler)(), int mode)
+{
+    charge(40);
+    machine::on_edge(number, handler ? call : nullptr, (void *)handler, mode);
+}
+
+void detachInterrupt(uint8_t number) { charge(40); machine::on_edge(number, nullptr, nullptr, 0); }
 void interrupts() { machine::enable(true); charge(1); }
 void noInterrupts() { machine::enable(false); charge(1); }
 SketchStatus sketch_status;

@@ -49,11 +49,15 @@ enum {
     IN_DRIVE = 'd',     /* a part drives pin `index` at cycle `number` to level `value`; 2: it leaves it */
     IN_FORGET = 'f',    /* what parts were to drive at pin `index` is off */
     IN_EEPROM = 'E',    /* byte `number` of the EEPROM, at address `value` */
+    IN_MESSAGE = 'M',   /* a message of `value` bytes comes on channel `index`: see machine/messages.h */
+    IN_MORE = 'm',      /* `value` bytes more of it, in `number` */
     IN_WATCH = 'W',     /* pin `index` is to be reported */
     OUT_UART = 'T',     /* byte `value` left UART `index` */
     OUT_DUTY = 'D',     /* pin `index` is modulated by hardware: high for `value` of 65535 */
     OUT_WIDTH = 'H',    /* and high for `value` microseconds at a time */
     OUT_EEPROM = 'e',   /* byte `index` is in the EEPROM at address `value` now */
+    OUT_MESSAGE = 'M',  /* as IN_MESSAGE */
+    OUT_MORE = 'm',     /* two bytes more of it, in `value`, the first one low */
     OUT_RESET = 'R',    /* the board has started again */
     OUT_EDGE = 'P',     /* pin `index` is now at level `value` */
 };

@@ -9,9 +9,9 @@ enum LookaheadMode { SKIP_ALL, SKIP_NONE, SKIP_WHITESPACE };
 
 class Stream : public Print {
 public:
-    virtual int16_t available() = 0;
-    virtual int16_t read() = 0;
-    virtual int16_t peek() = 0;
+    virtual sketch_int available() = 0;
+    virtual sketch_int read() = 0;
+    virtual sketch_int peek() = 0;
     void setTimeout(uint32_t ms) { timeout_ = ms; }
     uint32_t getTimeout() const { return timeout_; }
     size_t readBytes(char *to, size_t size);

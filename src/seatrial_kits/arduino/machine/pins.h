@@ -6,15 +6,15 @@ struct Pin {
     bool level = false, watched = false, part = false; /* a part follows the sketch's levels there */
     bool output = false, latch = false; /* DDR and PORT: of an input, whether it is pulled up */
     int outside = -1;                   /* level that is driven from outside; -1: nothing is there */
-    int share = -1;                     /* of 255; -1: no PWM */
+    double share = -1.0, period = 0.0;  /* of PWM, cycles; below 0: none */
     double edge = 0.0;
 } pins[PINS];
 int modulated;
 
 void need_pin(uint8_t pin)
 {
-    if (pin >= BOARD_PINS)
-        end("it uses pin %d: the %s has 0 to %d", pin, BOARD, BOARD_PINS - 1);
+    if (pin >= PINS)
+        end("it uses pin %d: the %s has 0 to %d", pin, board::NAME, PINS - 1);
 }
 
 /* PIN, DDR and PORT as libraries use them that take a pin's registers (portOutputRegister): each pin has
@@ -36,12 +36,12 @@ void put_level(uint8_t pin, bool to)
     pins[pin].level = to;
     registers[pin][OF_INPUT] = to;
     show(pin);
-    for (int each = 0; each < INTERRUPTS; each++) {
-        Interrupt &one = externals[each];
-        bool wanted = one.mode == 1 || one.mode == (to ? 3 : 2);
-        if (INTERRUPT_PIN[each] == pin && one.handler && wanted)
-            one.pending = true;
-    }
+    int number = board::interrupt_of(pin);
+    if (number < 0)
+        return;
+    Interrupt &one = externals[number];
+    if (one.handler && (one.mode == 1 || one.mode == (to ? 3 : 2)))
+        one.pending = true;
 }
 
 void settle(uint8_t pin)
@@ -64,7 +64,7 @@ void settle_own(uint8_t pin)
 /* Let what was written to registers happen. */
 void take_registers()
 {
-    for (uint8_t pin = 0; pin < BOARD_PINS; pin++) {
+    for (uint8_t pin = 0; pin < PINS; pin++) {
         bool output = registers[pin][OF_MODE] & 1, latch = registers[pin][OF_OUTPUT] & 1;
         if (output == pins[pin].output && latch == pins[pin].latch)
             continue;
@@ -94,22 +94,11 @@ void put_outside(uint8_t pin, int to)
     settle(pin);
 }
 
-double modulation_period(uint8_t pin)
-{
-#ifdef BOARD_MEGA
-    bool fast = pin == 4 || pin == 13;
-#else
-    bool fast = pin == 5 || pin == 6;
-#endif
-    return CLOCK / (fast ? 976.5625 : 490.196);
-}
-
 void turn_modulated(uint8_t pin)
 {
     Pin &one = pins[pin];
-    double high = one.share / 255.0, period = modulation_period(pin);
     put_output(pin, !one.level);
-    one.edge += period * (one.level ? high : 1.0 - high);
+    one.edge += one.period * (one.level ? one.share : 1.0 - one.share);
 }
 
 #endif

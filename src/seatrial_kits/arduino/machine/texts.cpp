@@ -67,10 +67,10 @@ size_t Print::print(unsigned long v, int base)
     return write(strupr(ultoa(v, digits, base < 2 ? 10 : base)));
 }
 
-/* In single precision, as the board does it. */
+/* In the board's precision. */
 size_t Print::print(double value, int digits)
 {
-    float v = (float)value;
+    sketch_real v = (sketch_real)value;
     if (isnan(v))
         return write("nan");
     if (isinf(v))
@@ -83,12 +83,12 @@ size_t Print::print(double value, int digits)
         n += write('-');
         v = -v;
     }
-    float rounding = 0.5f;
+    sketch_real rounding = 0.5f;
     for (int i = 0; i < digits; i++)
         rounding /= 10.0f;
     v += rounding;
     uint32_t whole = (uint32_t)v;
-    float rest = v - (float)whole;
+    sketch_real rest = v - (sketch_real)whole;
     n += print((unsigned long)whole);
     if (digits > 0)
         n += write('.');
@@ -96,10 +96,39 @@ size_t Print::print(double value, int digits)
         rest *= 10.0f;
         unsigned digit = (unsigned)rest;
         n += print(digit);
-        rest -= (float)digit;
+        rest -= (sketch_real)digit;
     }
     return n;
 }
+
+#ifdef ESP32
+size_t Print::print(long long v, int base)
+{
+    char digits[68];
+    return write(lltoa(v, digits, base));
+}
+
+size_t Print::print(unsigned long long v, int base)
+{
+    char digits[68];
+    return write(strupr(ulltoa(v, digits, base)));
+}
+
+size_t Print::printf(const char *format, ...)
+{
+    va_list values;
+    va_start(values, format);
+    char *text = nullptr;
+    int size = vasprintf(&text, format, values);
+    va_end(values);
+    size_t n = size < 0 ? 0 : write((const uint8_t *)text, (size_t)size);
+    free(text);
+    return n;
+}
+
+String::String(long long v, unsigned char base) { char b[68]; text_ = lltoa(v, b, base); }
+String::String(unsigned long long v, unsigned char base) { char b[68]; text_ = ulltoa(v, b, base); }
+#endif
 
 int Stream::timedRead()
 {
@@ -108,7 +137,7 @@ int Stream::timedRead()
         int c = read();
         if (c >= 0 || machine::now >= latest)
             return c;
-        machine::pass_until(latest, true);
+        machine::wait(latest);
     }
 }
 
@@ -119,7 +148,7 @@ int Stream::timedPeek()
         int c = peek();
         if (c >= 0 || machine::now >= latest)
             return c;
-        machine::pass_until(latest, true);
+        machine::wait(latest);
     }
 }
 

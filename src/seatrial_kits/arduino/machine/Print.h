@@ -34,18 +34,23 @@ public:
     size_t print(unsigned long v, int base = DEC);
     size_t print(double v, int digits = 2);
     size_t print(const Printable &what) { return what.printTo(*this); }
+#ifdef ESP32
+    size_t print(long long v, int base = DEC);
+    size_t print(unsigned long long v, int base = DEC);
+    size_t printf(const char *format, ...) __attribute__((format(printf, 2, 3)));
+#endif
 
     size_t println() { return write("\r\n"); }
     template <typename T> size_t println(const T &what) { size_t n = print(what); return n + println(); }
     template <typename T> size_t println(const T &what, int how) { size_t n = print(what, how); return n + println(); }
-    int16_t getWriteError() { return write_error_; }
+    sketch_int getWriteError() { return write_error_; }
     void clearWriteError() { write_error_ = 0; }
 
 protected:
-    void setWriteError(int error = 1) { write_error_ = (int16_t)error; }
+    void setWriteError(int error = 1) { write_error_ = (sketch_int)error; }
 
 private:
-    int16_t write_error_ = 0;
+    sketch_int write_error_ = 0;
 };
 
 #endif

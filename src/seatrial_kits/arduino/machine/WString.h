@@ -23,6 +23,16 @@ public:
     String(float v, unsigned char decimals = 2) : String((double)v, decimals) {}
     String(double v, unsigned char decimals = 2);
 
+#ifdef ESP32
+    String(long long v, unsigned char base = 10);
+    String(unsigned long long v, unsigned char base = 10);
+    String(const char *text, unsigned size) : text_(text, size) {}
+    String(const uint8_t *text, unsigned size) : text_((const char *)text, size) {}
+    bool isEmpty() const { return text_.empty(); }
+    void clear() { text_.clear(); }
+    bool concat(const char *text, unsigned size) { text_.append(text, size); return true; }
+    operator bool() const { return true; }
+#endif
     bool reserve(unsigned size) { text_.reserve(size); return true; }
     unsigned length() const { return (unsigned)text_.size(); }
     const char *c_str() const { return text_.c_str(); }
@@ -41,7 +51,7 @@ public:
     template <typename T> friend String operator+(const String &a, const T &b) { return a.text_ + String(b).text_; }
     friend String operator+(const char *a, const String &b) { return a + b.text_; }
 
-    int16_t compareTo(const String &other) const { return (int16_t)text_.compare(other.text_); }
+    sketch_int compareTo(const String &other) const { return (sketch_int)text_.compare(other.text_); }
     bool equals(const String &other) const { return text_ == other.text_; }
     bool equalsIgnoreCase(const String &other) const;
     bool operator==(const String &other) const { return text_ == other.text_; }
@@ -55,11 +65,11 @@ public:
     bool startsWith(const String &what, unsigned from = 0) const { return text_.compare(from < text_.size() ? from : text_.size(), what.length(), what.text_) == 0; }
     bool endsWith(const String &what) const { return length() >= what.length() && text_.compare(length() - what.length(), std::string::npos, what.text_) == 0; }
 
-    int16_t indexOf(char c, unsigned from = 0) const { return place(text_.find(c, from)); }
-    int16_t indexOf(const String &what, unsigned from = 0) const { return place(text_.find(what.text_, from)); }
-    int16_t lastIndexOf(char c) const { return place(text_.rfind(c)); }
-    int16_t lastIndexOf(char c, unsigned from) const { return place(text_.rfind(c, from)); }
-    int16_t lastIndexOf(const String &what) const { return place(text_.rfind(what.text_)); }
+    sketch_int indexOf(char c, unsigned from = 0) const { return place(text_.find(c, from)); }
+    sketch_int indexOf(const String &what, unsigned from = 0) const { return place(text_.find(what.text_, from)); }
+    sketch_int lastIndexOf(char c) const { return place(text_.rfind(c)); }
+    sketch_int lastIndexOf(char c, unsigned from) const { return place(text_.rfind(c, from)); }
+    sketch_int lastIndexOf(const String &what) const { return place(text_.rfind(what.text_)); }
     String substring(unsigned from) const { return substring(from, length()); }
     String substring(unsigned from, unsigned to) const;
 
@@ -71,12 +81,12 @@ public:
     void trim();
     int32_t toInt() const { return (int32_t)atol(c_str()); }
     float toFloat() const { return (float)atof(c_str()); }
-    float toDouble() const { return toFloat(); }
+    sketch_real toDouble() const { return (sketch_real)atof(c_str()); }
     void toCharArray(char *to, unsigned size, unsigned from = 0) const;
     void getBytes(unsigned char *to, unsigned size, unsigned from = 0) const { toCharArray((char *)to, size, from); }
 
 private:
-    static int16_t place(size_t at) { return at == std::string::npos ? -1 : (int16_t)at; }
+    static sketch_int place(size_t at) { return at == std::string::npos ? -1 : (sketch_int)at; }
     std::string text_;
 };
 

@@ -3,6 +3,11 @@
 #define CRASHES_H
 
 constexpr int CALLS = 24;
+#ifdef __x86_64__
+constexpr int COUNTER = REG_RIP;
+#else
+constexpr int COUNTER = REG_EIP;
+#endif
 
 /* End the run. The addresses of the calls that led here come behind the text, the innermost first, from
  * `place` on if one is given: the first that is not the board's own is the sketch's. */
@@ -29,11 +34,11 @@ void crashed(int number, siginfo_t *info, void *context)
     char *at = (char *)info->si_addr;
     if (number == SIGSEGV && at >= stack - GUARD && at < stack)
         end("it overran its stack of %zu kB: a recursion without end, or large local arrays "
-            "(the board has 8 kB or less in all)",
-            STACK >> 10);
-    if (at == nullptr && ((ucontext_t *)context)->uc_mcontext.gregs[REG_RIP] == 0)
+            "(the board has %s in all)",
+            stack_size >> 10, board::MEMORY);
+    if (at == nullptr && ((ucontext_t *)context)->uc_mcontext.gregs[COUNTER] == 0)
         reset(); /* a jump to the beginning of the program */
-    greg_t place = ((ucontext_t *)context)->uc_mcontext.gregs[REG_RIP];
+    greg_t place = ((ucontext_t *)context)->uc_mcontext.gregs[COUNTER];
     char text[160];
     int length = snprintf(text, sizeof text, "it crashed: %s", strsignal(number));
     if (number == SIGSEGV)

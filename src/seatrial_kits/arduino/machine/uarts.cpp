@@ -10,7 +10,6 @@ namespace machine {
 
 namespace {
 
-constexpr int RING = 64;
 constexpr double NOT_DUE = 1e18;
 
 struct Incoming {
@@ -22,6 +21,7 @@ struct Uart {
     double line_baud = 0.0, bit = 0.0; /* baud; cycles of a bit, 0 while closed */
     bool other_rate = false;           /* it is not open at its line's: what comes and goes is lost */
     uint64_t since = 0;                /* when it became so */
+    int ring = board::RECEIVED;
     int rx_pin = -1, tx_pin = -1;      /* of a line at pins */
     bool muted = false, overflowed = false;
     std::deque<Incoming> line;
@@ -93,7 +93,7 @@ static void arrive(Uart &uart)
     schedule(uart);
     if (uart.bit <= 0.0 || uart.muted || uart.other_rate)
         return;
-    if (uart.in.size() < RING - 1)
+    if ((int)uart.in.size() < uart.ring - 1)
         uart.in.push_back(data);
     else
         uart.overflowed = true;
@@ -152,7 +152,7 @@ int take(uint8_t uart, bool keep)
     return data;
 }
 
-int room(uint8_t uart) { return RING - 1 - (int)uarts[uart].out.size(); }
+int room(uint8_t uart) { return board::SENT - 1 - (int)uarts[uart].out.size(); }
 
 void send(uint8_t uart, uint8_t data)
 {
@@ -160,7 +160,7 @@ void send(uint8_t uart, uint8_t data)
     if (one.bit <= 0.0)
         return;
     while (room(uart) <= 0)
-        pass_until(now + (uint64_t)(10.0 * one.bit) + 1, true);
+        wait(now + (uint64_t)(10.0 * one.bit) + 1);
     one.out.push_back(data);
     if (one.sent >= NOT_DUE)
         shift_next(one, (double)now);
@@ -170,7 +170,7 @@ void send(uint8_t uart, uint8_t data)
 void drain(uint8_t uart)
 {
     while (uarts[uart].sent < NOT_DUE)
-        pass_until((uint64_t)uarts[uart].sent + 1, true);
+        wait((uint64_t)uarts[uart].sent + 1);
 }
 
 static int line_with(int Uart::*end, int pin)
@@ -183,6 +183,9 @@ static int line_with(int Uart::*end, int pin)
 
 int line_to(int rx_pin) { return line_with(&Uart::rx_pin, rx_pin); }
 int line_from(int tx_pin) { return line_with(&Uart::tx_pin, tx_pin); }
+
+bool placed(uint8_t uart, bool rx) { return (rx ? uarts[uart].rx_pin : uarts[uart].tx_pin) >= 0; }
+void set_ring(uint8_t uart, int size) { uarts[uart].ring = size; }
 
 bool overflowed(uint8_t uart)
 {

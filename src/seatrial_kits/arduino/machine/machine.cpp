@@ -24,35 +24,30 @@ namespace machine {
 
 uint64_t now;
 uint8_t reset_flags = 1;
+void (*between)();
+void (*wait)(uint64_t when) = [](uint64_t when) { pass_until(when, true); };
 
 namespace {
 
-constexpr int INTERRUPTS = 6, CONFIGURED = 16, SERVOS = 12;
+using board::INTERRUPTS;
+constexpr int CONFIGURED = 16, SERVOS = 16, ALARMS = 64;
 constexpr int EEPROM_MOST = 4096;
-constexpr size_t STACK = 64 << 10, GUARD = 64 << 10;
+constexpr size_t GUARD = 64 << 10;
 constexpr uint64_t FRAME = (uint64_t)(0.02 * CLOCK);
-#ifdef BOARD_MEGA
-constexpr int INTERRUPT_PIN[INTERRUPTS] = {2, 3, 21, 20, 19, 18};
-constexpr int BOARD_PINS = 70;
-const char BOARD[] = "Mega";
-#else
-constexpr int BOARD_PINS = 20;
-const char BOARD[] = "Uno";
-constexpr int INTERRUPT_PIN[INTERRUPTS] = {2, 3, -1, -1, -1, -1};
-#endif
 
 uint64_t target, next_due = NEVER; /* nothing happens before main(): constructors only */
 uint64_t last_call, patience;
-char *stack;
+bool others_wanted;
+char *stack, *first_stack; /* the one in use; that of loop() */
+size_t stack_size = board::STACK;
 
-struct Interrupt {
-    void (*handler)();
-    int mode;
-    bool pending;
-} externals[INTERRUPTS];
-bool interrupts_on = true, in_interrupt;
+void plan_next();
+
+#include "interrupts.h"
+#include "messages.h"
+
 uint64_t watchdog_cycles, watchdog_due = NEVER;
-double adc[16];
+double adc[PINS];
 uint8_t memory[EEPROM_MOST];
 link_input configured[CONFIGURED]; /* lines: the same after a reset */
 int configured_count;
@@ -85,7 +80,7 @@ void take_input(const link_input *input)
         configure(input);
         break;
     case IN_EEPROM: memory[input->value % EEPROM_MOST] = (uint8_t)input->number; break;
-    case IN_VOLTS: adc[index % 16] = input->number; break;
+    case IN_VOLTS: adc[index % PINS] = input->number; break;
     case IN_LEVEL: put_outside(index % PINS, input->number != 0.0); break;
     case IN_FREQUENCY: wave_set(index, 0, input->number, now); break;
     case IN_FRAME: wave_frame(index, input->number); break;
@@ -96,6 +91,8 @@ void take_input(const link_input *input)
     case IN_REPLY: part_clear(input); break;
     case IN_DRIVE: drive_add(index % PINS, (uint8_t)input->value, (uint64_t)input->number); break;
     case IN_FORGET: drive_forget(index % PINS); break;
+    case IN_MESSAGE: message_begin(input->index, input->value); break;
+    case IN_MORE: message_add(input); break;
     case IN_WATCH: pins[index % PINS].watched = true; break;
     }
 }
@@ -117,6 +114,7 @@ uint64_t first(bool do_it)
     all = servo_next < all ? servo_next : all;
     all = tone_next < all ? tone_next : all;
     all = drive_next() < all ? drive_next() : all;
+    all = alarm_next < all ? alarm_next : all;
     all = watchdog_due < all ? watchdog_due : all;
     all = target < all ? target : all;
     if (!do_it)
@@ -137,6 +135,8 @@ uint64_t first(bool do_it)
     } else if (all == drive_next()) {
         drive_at one = drive_take();
         put_outside(one.pin, one.level == DRIVE_NONE ? -1 : one.level);
+    } else if (all == alarm_next) {
+        ring();
     } else if (all == watchdog_due) {
         reset();
     } else {
@@ -148,33 +148,21 @@ uint64_t first(bool do_it)
     return all;
 }
 
-void interrupt()
-{
-    if (in_interrupt || !interrupts_on)
-        return;
-    for (int each = 0; each < INTERRUPTS; each++) {
-        if (!externals[each].pending)
-            continue;
-        externals[each].pending = false;
-        in_interrupt = true;
-        last_call = now;
-        charge(80); /* registers saved and restored, the handler called */
-        externals[each].handler();
-        in_interrupt = false;
-        interrupts_on = true; /* the return of a handler sets the flag */
-    }
-}
+/* At once if something may be at hand that has no time of its own. */
+void plan_next() { next_due = by_registers || others_wanted ? 0 : first(false); }
 
 void happen()
 {
     if (by_registers)
         take_registers();
+    if (by_registers || others_wanted) /* it was planned for at once, and nothing may be due */
+        next_due = first(false);
     while (next_due <= now) {
         first(true);
         next_due = first(false);
     }
     interrupt();
-    next_due = by_registers ? 0 : first(false);
+    plan_next();
 }
 
 void refuse_hang()
@@ -192,7 +180,7 @@ void *run(void *)
     catch_crashes();
     if (!resumed)
         target = link_read();
-    next_due = by_registers ? 0 : first(false);
+    plan_next();
     setup();
     for (;;) {
         last_call = now;
@@ -236,7 +224,7 @@ void pass_until(uint64_t when, bool event)
     }
 }
 
-void reschedule() { next_due = first(false); }
+void reschedule() { plan_next(); }
 void report_byte(uint8_t uart, uint8_t data) { link_put(OUT_UART, uart, data, now); }
 
 void drive(uint8_t pin, bool to)
@@ -271,18 +259,19 @@ void remember(uint16_t at, uint8_t value)
     memory[at % EEPROM_MOST] = value;
 }
 
-double volts(uint8_t channel) { return adc[channel % 16]; }
+double volts(uint8_t channel) { return adc[channel % PINS]; }
 
-void modulate(uint8_t pin, int share)
+void modulate(uint8_t pin, double share, double period)
 {
     need_pin(pin);
     if (pins[pin].share < 0) {
         modulated++;
         put_output(pin, true);
-        pins[pin].edge = (double)now + modulation_period(pin) * share / 255.0;
+        pins[pin].edge = (double)now + period * share;
     }
     pins[pin].share = share;
-    next_due = first(false);
+    pins[pin].period = period;
+    plan_next();
 }
 
 bool can_sound(uint8_t pin) { return tone_pin == NO_TONE || tone_pin == pin; }
@@ -293,7 +282,7 @@ void sound(uint8_t pin, uint32_t half_period, int64_t turns)
     tone_half = half_period;
     tone_turns = turns;
     tone_next = now + half_period;
-    next_due = first(false);
+    plan_next();
 }
 
 void hush(uint8_t pin)
@@ -301,29 +290,33 @@ void hush(uint8_t pin)
     if (tone_pin == pin)
         end_tone();
     drive(pin, false);
-    next_due = first(false);
+    plan_next();
 }
 
-void on_edge(uint8_t number, void (*handler)(), int mode)
+/* With a place before it that must not be touched. */
+char *new_stack(size_t size)
 {
-    if (number < INTERRUPTS)
-        externals[number] = {handler, mode, false};
+    char *place = (char *)mmap(nullptr, GUARD + size, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    mprotect(place + GUARD, size, PROT_READ | PROT_WRITE);
+    return place + GUARD;
 }
 
-void enable(bool on)
+void restart() { reset(); }
+void let_others_go_on(bool on) { others_wanted = on; plan_next(); }
+char *main_stack() { return first_stack; }
+const char *folder() { return program[3]; }
+
+void on_stack(char *begin, size_t size)
 {
-    interrupts_on = on;
-    if (on)
-        interrupt();
+    stack = begin;
+    stack_size = size;
 }
-
-bool enabled() { return interrupts_on && !in_interrupt; }
 
 void watchdog(uint64_t cycles)
 {
     watchdog_cycles = cycles;
     watchdog_due = cycles ? now + cycles : NEVER;
-    next_due = first(false);
+    plan_next();
 }
 
 void feed()
@@ -348,10 +341,12 @@ void end(const char *format, ...)
 extern "C" void __sanitizer_cov_trace_pc()
 {
     using namespace machine;
-    now += 12;
+    now += board::STRETCH;
     if (now >= next_due) {
         refuse_hang();
         happen();
+        if (others_wanted && !in_interrupt && interrupts_on)
+            between();
     }
 }
 
@@ -363,14 +358,12 @@ int main(int, char **arguments)
     patience = (uint64_t)(atof(arguments[2]) * CLOCK);
     memset(memory, 0xFF, sizeof memory);
     program = arguments;
-    if (arguments[3])
-        resume(atoi(arguments[3]));
-    stack = (char *)mmap(nullptr, GUARD + STACK, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
-    stack += GUARD;
-    mprotect(stack, STACK, PROT_READ | PROT_WRITE);
+    if (arguments[4])
+        resume(atoi(arguments[4]));
+    stack = first_stack = new_stack(stack_size);
     pthread_attr_t attributes;
     pthread_attr_init(&attributes);
-    pthread_attr_setstack(&attributes, stack, STACK);
+    pthread_attr_setstack(&attributes, stack, stack_size);
     pthread_t thread;
     pthread_create(&thread, &attributes, run, nullptr);
     sigset_t ticks; /* the sketch's thread takes them: there they say where it is */

@@ -45,7 +45,7 @@ struct Lasting {
     whole = whole && write(file, link_events, events) == (ssize_t)events && lseek(file, 0, SEEK_SET) == 0;
     char number[16];
     snprintf(number, sizeof number, "%d", file);
-    char *arguments[] = {program[0], program[1], program[2], number, nullptr};
+    char *arguments[] = {program[0], program[1], program[2], program[3], number, nullptr};
     if (whole)
         execv("/proc/self/exe", arguments);
     end("it cannot start again");

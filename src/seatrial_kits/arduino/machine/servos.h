@@ -43,7 +43,7 @@ void set_servo(int servo, int pin, double us)
     servos[servo] = {pin, us};
     if (servo_next == NEVER && pin >= 0)
         servo_next = now + 64;
-    next_due = first(false);
+    plan_next();
 }
 
 namespace {

@@ -1,0 +1,2 @@
+/* The ADC is called by analogRead. */
+#include "../Arduino.h"

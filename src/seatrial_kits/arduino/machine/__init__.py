@@ -1,0 +1,18 @@
+"""The simulated board of the host back end in C++, below the API of any family of boards."""
+
+DATA_FILES = (
+    "Print.h",
+    "Stream.h",
+    "WString.h",
+    "crashes.h",
+    "interrupts.h",
+    "machine.cpp",
+    "machine.h",
+    "messages.h",
+    "pins.h",
+    "reset.h",
+    "servos.h",
+    "texts.cpp",
+    "tones.h",
+    "uarts.cpp",
+)
