@@ -33,6 +33,7 @@ ROLES = {
     "file": "name of a file: relative to the file that gives it, or to where the run begins",
     "tunables": "parameters of others that a link sets: a table in its profile",
     "arrivals": "what outside commands: read again, in real time, as a point is due",
+    "verdicts": "how the criteria of the trial stand, as JSON: told while it runs",
     "order": "time and text of the last order from outside: named where a simulation fails",
     "command": "an order that something moves by: a run has a line for one that nothing feeds",
     "bytes": "bytes with their times, as text (`links.text`): a Binary in FMI 3.0",

@@ -121,7 +121,7 @@ class Ros2(Ros2Ports):
             entity = self._names.namespace.removeprefix("/")
             self._simulator = Simulator(self._participant, self.simulator, self, entity)
         self._faults: Faults | None = None
-        self._diagnosed_ns = self._boot_ns
+        self._diagnosed_ns, self._diagnosed = self._boot_ns, ""
         self._orders, self._source, self._reached = Orders(), "none", 0
         self._direct: dict[str, float] | None = None
         self._received = -1.0
@@ -204,7 +204,9 @@ class Ros2(Ros2Ports):
             self.paused = self._simulator.paused_s
 
     def close(self) -> None:
-        """Leave the domain, and finish the bag."""
+        """Leave the domain, and finish the bag; a criterion that ends a run is told before."""
+        if self._commands is not None and self.verdicts != self._diagnosed:
+            self._diagnose(self._boot_ns + self.now_ns)
         if self._bag is not None:
             self._bag.close()
         if self._participant is not None:
@@ -241,10 +243,10 @@ class Ros2(Ros2Ports):
             self._simulator.stand_still(now_ns, self._fault_service.serve)
 
     def _diagnose(self, now_ns: int) -> None:
-        """Write the state of the link and of injected faults, once a second."""
-        if now_ns < self._diagnosed_ns:
+        """Write the state of link, faults and criteria, once a second and as criteria change."""
+        if now_ns < self._diagnosed_ns and self.verdicts == self._diagnosed:
             return
-        self._diagnosed_ns = now_ns + NS
+        self._diagnosed_ns, self._diagnosed = now_ns + NS, self.verdicts
         acting = {} if self._faults is None else self._faults.acting
         self._outlet.put("diagnostics", diagnostics(self, self._names, now_ns, acting), now_ns)
 

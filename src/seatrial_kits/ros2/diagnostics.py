@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Mapping
 from typing import Any
 
@@ -9,13 +10,23 @@ from .faults import NONE
 from .ports import Ros2Ports
 from .topics import Names
 
-_OK, _WARN = 0, 1
+_OK, _WARN, _ERROR = 0, 1, 2
+_SAID = {
+    "holds": "holds until now",
+    "broken": "broken",
+    "open": "not met yet",
+    "met": "met",
+    "missed": "not met in time",
+    "later": "evaluated at the end",
+}
+"""Words for how a criterion stands."""
+_FAILED = ("broken", "missed")
 
 
 def diagnostics(
     link: Ros2Ports, names: Names, now_ns: int, acting: Mapping[str, str]
 ) -> Mapping[str, Any]:
-    """Return what commands the vehicle, what was refused, and which faults act."""
+    """Return what commands the vehicle, what was refused, which faults act, and the criteria."""
     vehicle = names.namespace.removeprefix("/")
     failed = {unit: fault for unit, fault in acting.items() if fault != NONE}
     counted = {"source": link.source, "refused": link.refused, "late": link.late}
@@ -35,8 +46,18 @@ def diagnostics(
                 _WARN if failed else _OK,
                 failed,
             ),
+            *_criteria(json.loads(link.verdicts or "{}")),
         ],
     }
+
+
+def _criteria(verdicts: Mapping[str, str]) -> list[Mapping[str, Any]]:
+    return [
+        _status(
+            f"trial: {name}", _SAID[state], _ERROR if state in ("broken", "missed") else _OK, {}
+        )
+        for name, state in verdicts.items()
+    ]
 
 
 def _status(name: str, said: str, level: int, values: Mapping[str, Any]) -> Mapping[str, Any]:

@@ -104,6 +104,9 @@ class Ros2Ports(Logging, Reachable, TrueMotion, Sampled):
         0.0, "N.m", "moment at full manual control, to starboard; 0: none", min=0.0
     )
     shape = Parameter("", "1", "the vehicle's shape, for its description: JSON", role="shape")
+    verdicts = Parameter(
+        "", "1", "how the trial's criteria stand: JSON", tunable=True, role="verdicts"
+    )
     bag = Parameter("off", "1", "whether a bag of all it writes is kept", choices=("off", "on"))
     actuators = Parameter(
         "",

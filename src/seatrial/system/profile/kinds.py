@@ -38,7 +38,7 @@ def keys(group: str, kind: str) -> dict[str, Parameter]:
         for name, port in component_class(kind).ports.items()
         if isinstance(port, Parameter)
         # A seed belongs to an instance and a run, not to a data sheet.
-        and port.role not in ("seed", "run-folder", "shape")
+        and port.role not in ("seed", "run-folder", "shape", "verdicts")
         and name not in shared
     }
 

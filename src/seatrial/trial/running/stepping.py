@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
@@ -12,18 +12,15 @@ import numpy as np
 
 from ...errors import SimulationError
 from ...model.component import NS, seconds
-from ...model.units import unit
 from ...sim.actions import action
 from ...sim.clock import Pacer
 from ...sim.master import Master
 from ...sim.recorder import Recorder, Watched
-from ..criteria.formulas import Formula
-from ..criteria.predicates import Comparison, Kind, Record
-from ..criteria.robustness import Evaluation
 from ..criteria.verdict import Verdict
 from ..files.trial import Trial
 from ..files.trial_file import RealTimeEntry
 from ..records.ending import ended_by
+from .at_points import Standing, TerminationConditions
 from .hooks import Hooks
 from .lost_links import LostLinks
 from .preparation import Prepared
@@ -56,6 +53,7 @@ class Stepping:
         self._prepared, self._recorder, self._hooks = prepared, recorder, hooks
         self._folder = folder
         self._termination = TerminationConditions(trial, master, prepared.units)
+        self._standing = Standing(trial, master, prepared.units)
         self._events = trial.events()
         self.links = LostLinks(master, hooks.keep_going)
         self._shown = time.perf_counter()
@@ -86,6 +84,7 @@ class Stepping:
             if pace is not None:
                 master.meet_arrivals()  # last of all: what comes later waits for the next point
             decided = termination.status() if may_decide else None
+            self._standing.look()
             self.links.look()
             over = master.steps >= steps
             enders = master.ended()
@@ -140,7 +139,8 @@ class Stepping:
         """Step up to the next point at which something else than recording is done."""
         master, recorder = self.master, self._recorder
         rows = recorder.rows if master.is_compiled or not recorder.at_once else None
-        if rows is None or self._termination.has_any or self._hooks.observer is not None:
+        at_points = self._termination.has_any or self._standing.has_any
+        if rows is None or at_points or self._hooks.observer is not None:
             master.step()
             return
         if self._events:
@@ -237,60 +237,3 @@ class Pace:
         if self._paused_place is None:
             return 0.0
         return float(self._master.signals[self._paused_place])
-
-
-class TerminationConditions:
-    """Criteria with ``ends``, evaluated at every communication point.
-
-    One that must always hold ends the run where it is broken, one that must hold eventually
-    where it holds for the first time.
-    """
-
-    def __init__(self, trial: Trial, master: Master, units: Mapping[str, str]) -> None:
-        self._master = master
-        self._conditions: list[Formula] = []
-        self._goals: list[Formula] = []
-        kinds: dict[str, set[Kind]] = {}
-        for entry, (_, criterion) in zip(trial.file.criteria, trial.criteria, strict=True):
-            if entry.ends:
-                if criterion.condition is not None:
-                    self._conditions.append(criterion.condition)
-                elif criterion.goal is not None:
-                    self._goals.append(criterion.goal)
-                for name, wanted in criterion.kinds.items():
-                    kinds.setdefault(name, set()).update(wanted)
-        places = {".".join(name): place for place, name in enumerate(master.names)}
-        self._texts = {name: places[name] for name, wanted in kinds.items() if "text" in wanted}
-        self._scales = {
-            name: (places[name], unit(units[name]))
-            for name, wanted in kinds.items()
-            if wanted != {"text"}
-        }
-
-    @property
-    def has_any(self) -> bool:
-        """Whether there are such criteria."""
-        return bool(self._conditions or self._goals)
-
-    def status(self) -> str | None:
-        """Return the status of a run that is over now, ended or complete; else None."""
-        if not self.has_any:
-            return None
-        signals = self._master.signals
-        numbers = {
-            name: float(signals[place]) * measure.factor + measure.offset
-            for name, (place, measure) in self._scales.items()
-        }
-        if not all(self._holds(condition, numbers) for condition in self._conditions):
-            return "ended"
-        if any(self._holds(goal, numbers) for goal in self._goals):
-            return "complete"
-        return None
-
-    def _holds(self, formula: Formula, numbers: Mapping[str, float]) -> bool:
-        if isinstance(formula, Comparison):  # nearly all are: arrays of one value cost ten times
-            return formula.holds_of(numbers)
-        signals = self._master.signals
-        texts = {name: [str(signals[place])] for name, place in self._texts.items()}
-        now = Record(np.zeros(1), {n: np.array([value]) for n, value in numbers.items()}, texts)
-        return bool(Evaluation(now).margins(formula)[0][0] > 0)
