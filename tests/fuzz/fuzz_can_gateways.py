@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from typing import Any
 
-from seatrial_kits.can import gateway_slcan, gateway_socketcand, gateway_yd_raw
+from seatrial_kits.can.gateways import slcan, socketcand, yd_raw
 from seatrial_kits.can.operations import Transmit, decode, encode
 
 CLIENTS = (
-    gateway_slcan._Adapter,
-    lambda channel: gateway_socketcand._Client(channel, gateway_socketcand._Traffic()),
-    gateway_yd_raw._Client,
+    slcan._Adapter,
+    lambda channel: socketcand._Client(channel, socketcand._Traffic()),
+    yd_raw._Client,
 )
 
 

@@ -173,8 +173,8 @@ def test_nothing_else_opens_sockets_or_ports():
         "seatrial/links/endpoints/descriptor.py",
         "seatrial/links/endpoints/tcp.py",
         "seatrial/links/endpoints/udp.py",
-        "seatrial_kits/can/dronecan_multicast.py",
-        "seatrial_kits/can/gateway_python_can.py",
+        "seatrial_kits/can/gateways/dronecan_multicast.py",
+        "seatrial_kits/can/gateways/python_can.py",
         "seatrial_kits/can/run_log.py",
         "seatrial_kits/can/messages.py",
     }

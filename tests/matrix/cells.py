@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 from seatrial.fmi.components.index import component_class, components
 from seatrial.links.endpoints.url import TRANSPORTS
-from seatrial_kits.can.gateway_url import FORMS
+from seatrial_kits.can.gateways.url import FORMS
 
 from .kinds import Kind
 

@@ -10,8 +10,8 @@ from seatrial.links.endpoints.endpoint import report
 from seatrial.model.component import NS, Component, Input, Output, Parameter, Reachable, terminal
 
 from .frame import Frame
-from .gateway import Gateway
-from .gateway_url import check_link, open_gateway
+from .gateways.gateway import Gateway
+from .gateways.url import check_link, open_gateway
 from .node import CanNode
 from .operations import BusError, Confirm, Transmit
 from .safe_state import frames_of
@@ -27,7 +27,7 @@ FORGOTTEN_NS = 5 * NS
 class CanGateway(Reachable, Component):
     """Frames of a simulated bus out to programs and hardware, and theirs in.
 
-    ``link`` says where they meet (`gateway_url`). Every step it takes in what has arrived, and
+    ``link`` says where they meet (`gateways.url`). Every step it takes in what has arrived, and
     requests it of the bus at the time of the beginning of that step; what it receives, goes out
     with the simulated time at which it was on the bus. So tools see the bus as it is in a run in
     real time; one that runs as fast as it can is over before they have answered.

@@ -11,9 +11,9 @@ import pytest
 from seatrial.links.endpoints.budget import MOST
 from seatrial.links.endpoints.udp import MOST_READS
 from seatrial_kits.can.frame import Frame
-from seatrial_kits.can.gateway import FRAME_BYTES, LEAST
-from seatrial_kits.can.gateway_python_can import PythonCanGateway
-from seatrial_kits.can.gateway_url import open_gateway
+from seatrial_kits.can.gateways.gateway import FRAME_BYTES, LEAST
+from seatrial_kits.can.gateways.python_can import PythonCanGateway
+from seatrial_kits.can.gateways.url import open_gateway
 
 WAIT_S = 10.0
 FLOOD, HONEST = Frame(0x100, b"f", extended=True), Frame(0x200, b"h", extended=True)
@@ -27,8 +27,8 @@ LINES = {
 @pytest.fixture
 def opened(monkeypatch):
     """Return a function that opens a gateway whose budget is the least, closed after the test."""
-    monkeypatch.setattr("seatrial_kits.can.gateway_clients.RATE", 0.0)
-    monkeypatch.setattr("seatrial_kits.can.gateway_python_can.RATE", 0.0)
+    monkeypatch.setattr("seatrial_kits.can.gateways.clients.RATE", 0.0)
+    monkeypatch.setattr("seatrial_kits.can.gateways.python_can.RATE", 0.0)
     gateways = []
 
     def open_(url):

@@ -6,7 +6,8 @@ from contextlib import ExitStack
 
 import pytest
 
-from seatrial_kits.can.dronecan_multicast import (
+from seatrial_kits.can.frame import Frame
+from seatrial_kits.can.gateways.dronecan_multicast import (
     GROUP,
     LOOPBACK,
     MOST_SENDERS,
@@ -14,7 +15,6 @@ from seatrial_kits.can.dronecan_multicast import (
     DroneCanMulticastGateway,
     packed,
 )
-from seatrial_kits.can.frame import Frame
 
 
 @pytest.fixture

@@ -17,8 +17,8 @@ from seatrial.links.endpoints.endpoint import Channel, Endpoint
 from seatrial.links.hardware import ALLOWED
 from seatrial_kits.can.component_gateway import CanGateway
 from seatrial_kits.can.frame import Frame
-from seatrial_kits.can.gateway_slcan import SlcanGateway
-from seatrial_kits.can.gateway_socketcand import SocketcandGateway
+from seatrial_kits.can.gateways.slcan import SlcanGateway
+from seatrial_kits.can.gateways.socketcand import SocketcandGateway
 from seatrial_kits.can.messages import frame_of, message
 
 from .served import WAIT_S, Served

@@ -4,7 +4,7 @@ import pytest
 
 from seatrial.errors import InputError
 from seatrial.links.hardware import ALLOWED, NETWORK_ALLOWED
-from seatrial_kits.can.gateway_url import FORMS, open_gateway
+from seatrial_kits.can.gateways.url import FORMS, open_gateway
 
 DEVICE, NETWORK = r"--hardware \(or SEATRIAL_HARDWARE=1", r"--network \(or SEATRIAL_NETWORK=1"
 BUSES = {

@@ -8,8 +8,8 @@ from hypothesis import strategies as st
 
 from seatrial.errors import InputError
 from seatrial_kits.can.frame import Frame
-from seatrial_kits.can.gateway_url import check_link, open_gateway
-from seatrial_kits.can.gateway_yd_raw import read_line, written_line
+from seatrial_kits.can.gateways.url import check_link, open_gateway
+from seatrial_kits.can.gateways.yd_raw import read_line, written_line
 
 from .served import WAIT_S, Served
 

@@ -9,8 +9,8 @@ from __future__ import annotations
 
 from seatrial.links.endpoints.endpoint import Endpoint
 
-from .frame import Frame
-from .gateway_clients import Client, ClientsGateway
+from ..frame import Frame
+from .clients import Client, ClientsGateway
 
 _DAY_MS = 86_400_000
 

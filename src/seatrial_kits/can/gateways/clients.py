@@ -10,10 +10,10 @@ from seatrial.links.endpoints.budget import Budget
 from seatrial.links.endpoints.endpoint import Channel, Endpoint
 from seatrial.links.safe_state import HeldChannels, inherited
 
-from .frame import Frame
+from ..frame import Frame
+from ..operations import Error
+from ..safe_state import frames_of
 from .gateway import LEAST, RATE, Gateway
-from .operations import Error
-from .safe_state import frames_of
 
 LONGEST_LINE = 1000
 """Characters without an end after which they are thrown away."""

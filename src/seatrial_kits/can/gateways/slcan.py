@@ -10,8 +10,8 @@ from __future__ import annotations
 
 from seatrial.links.endpoints.endpoint import Channel, Endpoint
 
-from .frame import FD_LENGTHS, Frame
-from .gateway_clients import Client, ClientsGateway
+from ..frame import FD_LENGTHS, Frame
+from .clients import Client, ClientsGateway
 
 _ANSWERS = {"V": "V1010", "v": "vSTDC", "N": "NSIMU", "F": "F00"}
 _SETTINGS = "SsYMmWXUQ"

@@ -6,8 +6,8 @@ from abc import ABC, abstractmethod
 
 from seatrial.links.endpoints.budget import Budget
 
-from .frame import Frame
-from .operations import Error
+from ..frame import Frame
+from ..operations import Error
 
 RATE, LEAST = 150_000.0, 1024
 """Bytes per second, and in one poll at least: as text, more than a full bus of 250 kbit/s."""

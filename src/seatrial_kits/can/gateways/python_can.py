@@ -13,10 +13,10 @@ from seatrial.errors import InputError
 from seatrial.links.endpoints.budget import Budget
 from seatrial.links.safe_state import Held, hold_bus
 
-from .frame import Frame
+from ..frame import Frame
+from ..messages import error_message, frame_of, message
+from ..operations import Error
 from .gateway import FRAME_BYTES, LEAST, RATE, Gateway
-from .messages import error_message, frame_of, message
-from .operations import Error
 
 _LONGEST_LINE = 1024
 """Bytes of a line of slcan; a frame has 31, one of CAN FD 139."""

@@ -17,9 +17,9 @@ from seatrial.errors import InputError
 from seatrial.links.endpoints.budget import MOST, Budget
 from seatrial.links.safe_state import Held, hold
 
-from .frame import Frame
+from ..frame import Frame
+from ..safe_state import frames_of
 from .gateway import FRAME_BYTES, LEAST, RATE, Gateway
-from .safe_state import frames_of
 
 GROUP, PORT = "239.65.82.{}", 57732
 MAGIC = 0x2934

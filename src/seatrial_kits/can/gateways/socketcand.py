@@ -16,10 +16,10 @@ from dataclasses import dataclass
 from seatrial.links.endpoints.endpoint import Channel
 from seatrial.links.endpoints.tcp import TcpServer
 
-from .frame import Frame
-from .gateway_clients import Client, ClientsGateway
-from .messages import error_class
-from .operations import Error
+from ..frame import Frame
+from ..messages import error_class
+from ..operations import Error
+from .clients import Client, ClientsGateway
 
 BUS = "can0"
 """Name of the only bus."""

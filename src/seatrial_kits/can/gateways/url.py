@@ -30,10 +30,10 @@ from seatrial.links.hardware import check_can_bus, check_host, check_listening, 
 
 from .dronecan_multicast import DroneCanMulticastGateway
 from .gateway import Gateway
-from .gateway_python_can import PythonCanGateway
-from .gateway_slcan import SlcanGateway
-from .gateway_socketcand import SocketcandGateway
-from .gateway_yd_raw import YdRawGateway
+from .python_can import PythonCanGateway
+from .slcan import SlcanGateway
+from .socketcand import SocketcandGateway
+from .yd_raw import YdRawGateway
 
 FORMS = {
     "socketcand": "socketcand:127.0.0.1:29536",

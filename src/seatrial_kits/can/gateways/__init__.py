@@ -1,0 +1,1 @@
+"""Gateways: programs on the simulated bus, each by its own protocol."""
