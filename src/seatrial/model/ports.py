@@ -32,7 +32,7 @@ ROLES = {
     "fault": "what goes wrong with it, in words: written by a trial's faults",
     "file": "name of a file: relative to the file that gives it, or to where the run begins",
     "tunables": "parameters of others that a link sets: a table in its profile",
-    "arrivals": "what outside commands: read again, in real time, as a point is due",
+    "arrivals": "what outside commands: in real time read again before a step, while it changes",
     "verdicts": "how the criteria of the trial stand, as JSON: told while it runs",
     "order": "time and text of the last order from outside: named where a simulation fails",
     "command": "an order that something moves by: a run has a line for one that nothing feeds",

@@ -37,7 +37,7 @@ def play(run: Run, stop_requested: Callable[[], int]) -> int:
     The clock is written at every new time, where the bag has none. Returns how many were written.
 
     Raises InputError without the packages cyclonedds and rosbags, for a domain that cannot be
-    joined, and for a run of which there is nothing to play.
+    joined, for types of another distribution, and for a run of which there is nothing to play.
     """
     try:
         from rosbags.rosbag2 import Reader
@@ -56,6 +56,12 @@ def play(run: Run, stop_requested: Callable[[], int]) -> int:
             for each in reader.connections
             if each.msgtype in type_store().fielddefs
         }
+        for each in (one for reader in readers for one in reader.connections):
+            if each.topic in topics and each.digest != type_store().hash_rihs01(each.msgtype):
+                raise InputError(
+                    f"{run.folder}: {each.topic} is {each.msgtype} of another distribution than "
+                    "this shell's: set ROS_DISTRO as it was in the run"
+                )
         if not topics:
             raise InputError(f"{run.folder} has no craft: there is nothing to play to nodes")
         messages: Iterator[Message] = heapq.merge(

@@ -2,11 +2,14 @@
 
 import math
 import os
+import shutil
 import subprocess
 import sys
 import time
 
 import pytest
+from rosbags.rosbag2 import Writer
+from rosbags.typesys import Stores, get_typestore
 
 from tests.command import seatrial, seatrial_process
 
@@ -75,3 +78,22 @@ def test_a_second_run_beside_nodes_is_refused(run):
     done = seatrial("play", str(run), str(run), "--ros2", cwd=run)
     assert done.returncode == 2
     assert "--ros2 plays one run" in done.stderr
+
+
+def test_types_of_another_distribution_are_refused(run, tmp_path):
+    record = shutil.copytree(run, tmp_path / "record")
+    jazzy = get_typestore(Stores.ROS2_JAZZY)
+    with Writer(record / "link", version=9) as bag:
+        kind = "sensor_msgs/msg/Range"
+        ping = jazzy.types[kind](
+            header=jazzy.types["std_msgs/msg/Header"](
+                stamp=jazzy.types["builtin_interfaces/msg/Time"](sec=0, nanosec=0), frame_id=""
+            ),
+            radiation_type=0, field_of_view=0.0, min_range=0.0, max_range=9.0, range=1.0, variance=0.0,
+        )  # fmt: skip
+        topic = bag.add_connection("/otter/echo_sounder", kind, typestore=jazzy)
+        bag.write(topic, 0, jazzy.serialize_cdr(ping, kind))
+    done = seatrial("play", str(record), "--ros2", cwd=tmp_path)
+    assert done.returncode == 2
+    assert "/otter/echo_sounder is sensor_msgs/msg/Range of another distribution" in done.stderr
+    assert "ROS_DISTRO" in done.stderr
