@@ -34,7 +34,7 @@ _ABSENT = {
     r"ESPAsync\w+\.h|AsyncTCP\.h|AsyncUDP\.h|WebServer\.h|DNSServer\.h|HTTP\w+\.h|lwip/.*": "TCP",
     r"WiFiClientSecure\.h|mbedtls/.*": "encryption",
     r"esp_camera\.h|camera_\w+\.h|img_converters\.h": "the camera",
-    r"esp_sleep\.h|esp_pm\.h|ulp\w*\.h|driver/rtc_io\.h": "sleep",
+    r"esp_sleep\.h|esp_pm\.h|ulp\w*\.h": "sleep",
     r"esp_ota_ops\.h|ArduinoOTA\.h|Update\.h|ESPmDNS\.h": "updates and names over the network",
     r"SD_MMC\.h|FFat\.h|sd_diskio\.h": "file systems besides LittleFS and SPIFFS",
     r"soc/.*|rom/.*|hal/.*|xtensa/.*|esp32/.*": "registers",

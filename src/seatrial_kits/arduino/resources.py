@@ -16,6 +16,7 @@ from .core import avr as core_avr
 from .core import util as core_util
 from .esp32 import driver as esp32_driver
 from .esp32 import freertos as esp32_freertos
+from .esp32 import soc as esp32_soc
 
 _FOLDERS = {
     "avr": avr,
@@ -25,6 +26,7 @@ _FOLDERS = {
     "esp32": esp32,
     "esp32/driver": esp32_driver,
     "esp32/freertos": esp32_freertos,
+    "esp32/soc": esp32_soc,
     "machine": machine,
     "shared": shared,
 }

@@ -188,3 +188,21 @@ def test_simavr_has_no_esp32(tmp_path):
     sketch = write_sketch(tmp_path, "void setup() {}\nvoid loop() {}\n")
     with pytest.raises(InputError, match="emulates AVR microcontrollers, not the ESP32"):
         Bench(sketch, "simavr", mcu="esp32")
+
+
+def test_registers_of_pins_are_pins(tmp_path):
+    source = """
+#include <soc/gpio_struct.h>
+void setup() {
+  Serial.begin(115200); pinMode(12, OUTPUT); pinMode(33, OUTPUT); pinMode(4, INPUT);
+  GPIO.out_w1ts = 1 << 12; GPIO.out1_w1ts.val = 2;
+  Serial.print(digitalRead(12)); Serial.print(digitalRead(33)); Serial.print(GPIO.in >> 4 & 1);
+  GPIO.out_w1tc = 1 << 12; volatile uint32_t *out = portOutputRegister(digitalPinToPort(33));
+  *out &= ~digitalPinToBitMask(33);
+  delay(1); Serial.print(digitalRead(12)); Serial.print(digitalRead(33));
+}
+void loop() {}
+"""
+    with running(tmp_path, source, wires="4 input 1") as bench:
+        bench.one.set("level.i1", True)
+        assert bench.run(0.1) == b"11100"

@@ -79,7 +79,7 @@ def test_a_second_run_is_the_same_to_the_bit(tmp_path):
 
 
 @pytest.mark.long
-@pytest.mark.parametrize("name", ["gloria-sketch", "hydrone-sketch"])
+@pytest.mark.parametrize("name", ["gloria-sketch", "hydrone-sketch", "hydrone-esp32"])
 def test_the_shipped_trials_hold(tmp_path, name):
     passes(sailed(name, tmp_path / "run"))
 

@@ -129,6 +129,13 @@ unsigned long pulseIn(uint8_t pin, uint8_t level, unsigned long timeout = 100000
 unsigned long pulseInLong(uint8_t pin, uint8_t level, unsigned long timeout = 1000000);
 void shiftOut(uint8_t data, uint8_t clock, uint8_t order, uint8_t value);
 uint8_t shiftIn(uint8_t data, uint8_t clock, uint8_t order);
+/* Registers of a pin: each pin is bit 0 of a port of its own, and the rest of its 32 bits stays as it is. */
+#define NOT_A_PORT 0
+#define digitalPinToPort(pin) ((uint8_t)((pin) + 1))
+#define digitalPinToBitMask(pin) (1UL)
+volatile uint32_t *portInputRegister(uint8_t port);
+volatile uint32_t *portModeRegister(uint8_t port);
+volatile uint32_t *portOutputRegister(uint8_t port);
 void attachInterrupt(uint8_t pin, void (*handler)(), int mode);
 void attachInterrupt(uint8_t pin, std::function<void()> handler, int mode);
 void attachInterruptArg(uint8_t pin, void (*handler)(void *), void *argument, int mode);

@@ -1,6 +1,7 @@
 /* Arduino-ESP32's functions in terms of the machine; costs are in its units of 62.5 ns, roughly a board's. */
 #include "Arduino.h"
 #include "machine.h"
+#include "soc/gpio_struct.h"
 
 #undef strlcpy
 #undef strlcat
@@ -32,6 +33,10 @@ void pinMode(uint8_t pin, uint8_t mode)
 
 void digitalWrite(uint8_t pin, uint8_t level) { charge(2); machine::drive(pin, level != LOW); }
 int digitalRead(uint8_t pin) { charge(2); return machine::level(pin); }
+
+volatile uint32_t *portInputRegister(uint8_t port) { return (volatile uint32_t *)machine::register_of((uint8_t)(port - 1), 0); }
+volatile uint32_t *portModeRegister(uint8_t port) { return (volatile uint32_t *)machine::register_of((uint8_t)(port - 1), 1); }
+volatile uint32_t *portOutputRegister(uint8_t port) { return (volatile uint32_t *)machine::register_of((uint8_t)(port - 1), 2); }
 
 static int adc_bits = 12;
 static double full[board::PINS]; /* V; 0: not set */
@@ -282,3 +287,25 @@ String IPAddress::toString() const
     snprintf(text, sizeof text, "%u.%u.%u.%u", (*this)[0], (*this)[1], (*this)[2], (*this)[3]);
     return text;
 }
+
+/* ------------------------------------------------------------------ registers of pins */
+
+GpioRegisters GPIO;
+
+template <typename Does> static void each_pin(int first, uint32_t pins, Does does)
+{
+    charge(1);
+    for (int each = 0; each < 32 && first + each < board::PINS; each++)
+        if (pins >> each & 1)
+            does((uint8_t)(first + each));
+}
+
+uint32_t sketch_gpio_read(int first)
+{
+    uint32_t found = 0;
+    each_pin(first, ~0u, [&](uint8_t pin) { found |= (uint32_t)machine::level(pin) << (pin - first); });
+    return found;
+}
+
+void sketch_gpio_write(int first, uint32_t pins, bool level) { each_pin(first, pins, [=](uint8_t pin) { machine::drive(pin, level); }); }
+void sketch_gpio_enable(int first, uint32_t pins, bool output) { each_pin(first, pins, [=](uint8_t pin) { machine::direct(pin, output); }); }

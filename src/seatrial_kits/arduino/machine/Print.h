@@ -4,6 +4,8 @@
 
 #include "WString.h"
 
+#define DEC 10
+
 class Print;
 class Printable {
 public:

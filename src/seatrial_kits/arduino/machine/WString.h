@@ -2,7 +2,13 @@
 #ifndef WString_h
 #define WString_h
 
+#include <ctype.h>
+#include <stdlib.h>
+#include <string.h>
+
 #include <string>
+
+#include "board.h"
 
 class __FlashStringHelper;
 #define F(text) (reinterpret_cast<const __FlashStringHelper *>(text))

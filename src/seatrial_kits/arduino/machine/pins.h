@@ -20,7 +20,7 @@ void need_pin(uint8_t pin)
 /* PIN, DDR and PORT as libraries use them that take a pin's registers (portOutputRegister): each pin has
  * its own, of which bit 0 is the pin. Between stretches of code what was written there happens. */
 enum { OF_INPUT, OF_MODE, OF_OUTPUT };
-volatile uint8_t registers[PINS][3];
+volatile uint8_t registers[PINS + 1][3]; /* one more: of the last pin, 32 bits may be read */
 bool by_registers; /* one was taken */
 
 void show(uint8_t pin)

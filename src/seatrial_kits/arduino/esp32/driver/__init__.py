@@ -4,5 +4,6 @@ DATA_FILES = (
     "adc.h",
     "gpio.h",
     "ledc.h",
+    "rtc_io.h",
     "twai.h",
 )
