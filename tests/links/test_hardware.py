@@ -113,9 +113,10 @@ COMPONENTS = {
 }
 """Of the core and of the kits, which may lack."""
 ON_A_BOARD = {"backend": "board", "links": "0=tcpout:192.0.2.1:1", "safe_state": ""}
+ON_THE_AIR = {"mcu": "esp32", "network": "192.0.2.1"}
 HERE = [
     (name, given)
-    for name, given in [*COMPONENTS.items(), ("arduino", ON_A_BOARD)]
+    for name, given in [*COMPONENTS.items(), ("arduino", ON_A_BOARD), ("arduino", ON_THE_AIR)]
     if name in shipped_names()
 ]
 
@@ -128,7 +129,7 @@ def test_every_component_that_opens_something_is_here():
 
 @pytest.mark.parametrize(("name", "given"), HERE)
 def test_every_component_says_which_key_it_is(name, given):
-    made, key = component_class(name)("it"), next(k for k in given if k not in ("backend",))
+    made, key = component_class(name)("it"), next(k for k in given if k not in ("backend", "mcu"))
     for parameter, value in given.items():
         made.set(parameter, value)
     with pytest.raises(InputError, match=rf"^it: {key}: .*{NETWORK}"):
@@ -177,6 +178,7 @@ def test_nothing_else_opens_sockets_or_ports():
         "seatrial_kits/can/gateways/python_can.py",
         "seatrial_kits/can/run_log.py",
         "seatrial_kits/can/messages.py",
+        "seatrial_kits/arduino/network.py",
     }
     lacking = {path for path in asking if not (folder / path).parent.is_dir()}  # a kit's
     assert found - between_processes - files - opened_before - bound - of_tests - pages == (

@@ -303,6 +303,12 @@ class Arduino(ArduinoPorts):
     def _made_peripherals(self) -> Peripherals | None:
         """Return what an ESP32 has besides; a project's folder ``data`` is in its flash."""
         if self._mcu.family != "esp32" or self.backend != "host":
+            for key in ("flash", "flash_after", "network"):
+                if found := getattr(self, key):
+                    raise InputError(
+                        f"{key}: {found!r} is for an ESP32 in the back end host; this board is "
+                        f"the {self._mcu.board} in {self.backend}"
+                    )
             return None
         file = project_of(Path(self.sketch).expanduser()) if self.sketch else None
         return Peripherals(self, file.parent / "data" if file else None)

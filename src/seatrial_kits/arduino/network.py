@@ -42,7 +42,7 @@ class Network:
         self.name, self.address = name, address
         self._sockets: dict[int, socket.socket] = {}
         if address:
-            check_listening("network", address)
+            check_listening("network: the board", address)
 
     def connect(self, inputs: Inputs) -> None:
         """Tell the board its address."""
@@ -97,7 +97,7 @@ class Network:
         if ipaddress.IPv4Address(self.address).is_loopback:
             return text if text.startswith("127.") else "127.0.0.1"
         try:
-            check_host("network", text)
+            check_host("network: the board", text)
         except InputError as error:
             raise SimulationError(f"{self.name}: {error}") from None
         return text

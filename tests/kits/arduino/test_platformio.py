@@ -3,6 +3,7 @@
 import pytest
 
 from seatrial.errors import InputError
+from seatrial_kits.arduino.component import Arduino
 from seatrial_kits.arduino.platformio import read_project
 from tests.command import seatrial
 
@@ -138,3 +139,11 @@ def test_mistakes_are_named(project, text, environment, expected):
 def test_another_microcontroller_than_the_projects_is_refused(project):
     with pytest.raises(InputError, match="megaatmega2560, of atmega2560, and mcu is atmega328p"):
         Bench(project, mcu="atmega328p")
+
+
+@pytest.mark.parametrize(("key", "value"), [("network", "127.0.0.2"), ("flash_after", "kept")])
+def test_what_an_esp32_alone_has_is_refused_of_another_board(key, value):
+    board = Arduino("it")
+    board.set(key, value)
+    with pytest.raises(InputError, match=rf"^it: {key}: '{value}' is for an ESP32 .* the Mega in host$"):
+        board.initialise()
