@@ -125,10 +125,15 @@ def test_a_mark_that_is_lost_above_half_a_metre_makes_it_go_around(height, mode)
 
 @pytest.mark.parametrize(
     ("height", "away", "mode"),
-    [(0.32, 0.48, DESCEND), (0.32, 0.52, GO_AROUND), (0.29, 0.52, DESCEND)],
+    [
+        (0.32, 0.48, DESCEND),
+        (0.32, 0.52, GO_AROUND),
+        (0.29, 0.52, DESCEND),
+        (0.29, 0.72, GO_AROUND),  # its feet would miss the deck
+    ],
 )
-def test_a_drone_astray_goes_around_unless_it_is_low(height, away, mode):
-    flight = over_the_pad(height, (0.1, 0.1), (0.0, 0.0, 0.0))
+def test_a_drone_astray_goes_around_unless_its_feet_meet_the_deck(height, away, mode):
+    flight = over_the_pad(height, (0.1, 0.1), (0.0, 0.0, 0.0), astray=0.7)
     flight.to(0.5)
     flight.position = at_rest(4.0, -3.0 - away, -0.2 - FEET - height)
     assert flight.to(0.52).get("mode") == mode

@@ -40,7 +40,8 @@ class DeckLandingControl(Windows, DeckEstimate, Sampled):
     the deck is nearer than the way in which that law brakes (`laws.braking`).
 
     **Go around**: the mark is not seen for 1 s while above 0.5 m; the error is above 0.5 m while
-    above 0.3 m; the predicted tilt at touch-down exceeds 9 degrees (predictive).
+    above 0.3 m, or above ``astray`` below; the predicted tilt at touch-down exceeds 9 degrees
+    (predictive).
 
     What is known of the deck is in `DeckEstimate`. Positions {n}, north-east-down.
     """
@@ -56,6 +57,7 @@ class DeckLandingControl(Windows, DeckEstimate, Sampled):
     waypoint = Parameter(0.0, "m", "where to fly before landing, from the start", axes=NED[:2])
     settle = Parameter(4.0, "s", "time over the pad before the descent", min=0.0)
     attempts = Parameter(20.0, "1", "go-arounds after which it gives up", min=0.0)
+    astray = Parameter(0.5, "m", "error from which it does not land: feet beside the deck", min=0.0)
     legs_time = Parameter(0.05, "s", "from load on the legs to motors off", min=0.0)
 
     legs_load = Input("N", "force on the legs, as their switches have it", optional=True)
@@ -173,7 +175,7 @@ class DeckLandingControl(Windows, DeckEstimate, Sampled):
         if self._loaded >= 0.0:
             return False
         unseen = lost >= 1.0 and height > 0.5
-        astray = off > 0.5 and height > 0.3
+        astray = off > (0.5 if height > 0.3 else self.astray)
         return unseen or astray or (self.control == "predictive" and self.tilts_too_far(t))
 
     def _arrived(self) -> bool:
