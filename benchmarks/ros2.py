@@ -27,8 +27,8 @@ from typing import Any
 import seatrial
 from seatrial.model.component import Component
 from seatrial_kits.ros2.component import Ros2
-from seatrial_kits.ros2.packing import packed
-from seatrial_kits.ros2.participant import Participant
+from seatrial_kits.ros2.dds.packing import packed
+from seatrial_kits.ros2.dds.participant import Participant
 from seatrial_kits.ros2.topics import COMMANDED, PUBLISHED, Names
 
 from .pages import addition, write_measured

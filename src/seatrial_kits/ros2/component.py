@@ -27,10 +27,10 @@ from .instruments import Instruments
 from .lockstep import Lockstep, awaited
 from .mismatches import Mismatches
 from .outlet import Outlet
-from .participant import Participant
+from .dds.participant import Participant
 from .ports import ANGLED, CHANNELS, SHARED, UNITS, Ros2Ports
 from .published import Here
-from .services import Service
+from .dds.services import Service
 from .simulator import Simulator
 from .steering import Orders
 from .topics import Names

@@ -9,7 +9,7 @@ from seatrial.errors import unknown
 from seatrial.links.vehicle_sensors import Sensors
 from seatrial.model.faults.catalogue import FAILURES
 
-from .services import Call
+from .dds.services import Call
 from .thrusters import Actuator
 
 KIND = "rcl_interfaces/srv/SetParameters"

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from functools import cache
 
-from .definitions import type_store
-from .packing import packed
-from .participant import Participant, Writer
+from .dds.definitions import type_store
+from .dds.packing import packed
+from .dds.participant import Participant, Writer
 
 KIND = "rmw_dds_common/msg/ParticipantEntitiesInfo"
 _GID = "rmw_dds_common/msg/Gid"

@@ -9,8 +9,8 @@ import time
 from collections.abc import Callable, Iterator, Mapping
 from typing import Any, NamedTuple
 
-from .definitions import dds_name
-from .participant import Participant
+from .dds.definitions import dds_name
+from .dds.participant import Participant
 from .topics import PUBLISHED
 
 _EVERY_S = 0.5

@@ -10,8 +10,8 @@ from seatrial.model.component import NS
 
 from .bag import Bag
 from .description import urdf
-from .packing import packed
-from .participant import Durability, Participant, Writer
+from .dds.packing import packed
+from .dds.participant import Durability, Participant, Writer
 from .ports import Ros2Ports
 from .published import BASE, MEASURED, Fields, Here, leg, measured, odometry, places, transforms
 from .topics import LATCHED, PUBLISHED, Names

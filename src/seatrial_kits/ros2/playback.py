@@ -16,9 +16,9 @@ from seatrial.plugins import service
 from seatrial.sim.clock import Pacer
 from seatrial.trial.records.run_folder import Run
 
-from .definitions import INSTALL, type_store
-from .packing import packed
-from .participant import Participant
+from .dds.definitions import INSTALL, type_store
+from .dds.packing import packed
+from .dds.participant import Participant
 from .topics import LATCHED, PUBLISHED
 
 _CLOCK = PUBLISHED["clock"]

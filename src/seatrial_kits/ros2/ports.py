@@ -23,7 +23,7 @@ from seatrial.model.sampled import Sampled
 from seatrial.model.terminals import ORDERED
 from seatrial.physics.thrust_curve import COEFFICIENTS
 
-from .participant import HIGHEST_DOMAIN
+from .dds.participant import HIGHEST_DOMAIN
 from .topics import check_namespace, read_topics
 
 CHANNELS = tuple(f"ch{number}" for number in range(1, 17))

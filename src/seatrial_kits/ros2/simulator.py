@@ -11,12 +11,12 @@ from seatrial.links.interruption import Interruption
 from seatrial.links.watchdog import Waiting
 from seatrial.physics.craft.kinematics import to_ned
 
-from .action import StepsAction
+from .dds.action import StepsAction
 from .frames import enu
-from .participant import Participant
+from .dds.participant import Participant
 from .ports import Ros2Ports
 from .published import MAP, pose
-from .services import Call, Handler, Service
+from .dds.services import Call, Handler, Service
 
 PLAYING, PAUSED = 1, 2
 UNSUPPORTED, OK, NOT_FOUND, INCORRECT_STATE, FAILED = range(5)

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 from seatrial.errors import InputError, unknown
 from seatrial.testing.waiting import Queue
 
-from .packing import packed
-from .participant import Participant, Writer
+from .dds.packing import packed
+from .dds.participant import Participant, Writer
 from .topics import ACTUATORS, COMMANDED, PUBLISHED
 
 if TYPE_CHECKING:

@@ -13,8 +13,8 @@ from seatrial.model.sampled import Sampled
 from seatrial.model.waypoints import MOST, Waypoints
 
 from .frames import quaternion
-from .packing import packed
-from .participant import HIGHEST_DOMAIN, Participant, Writer
+from .dds.packing import packed
+from .dds.participant import HIGHEST_DOMAIN, Participant, Writer
 from .vrx_scores import Gates, Score, StationKeeping, Wayfinding
 
 GOALS = tuple(f"goal{number}" for number in range(1, MOST + 1))

@@ -8,7 +8,7 @@ import pytest
 
 _SHOW = """
 import json, os, socket, sys
-from seatrial_kits.ros2.participant import Participant
+from seatrial_kits.ros2.dds.participant import Participant
 
 def sockets():
     for name in os.listdir("/proc/self/fd"):

@@ -5,8 +5,8 @@ import time
 import pytest
 
 from seatrial import Simulation
-from seatrial_kits.ros2.packing import packed
-from seatrial_kits.ros2.participant import Participant
+from seatrial_kits.ros2.dds.packing import packed
+from seatrial_kits.ros2.dds.participant import Participant
 
 FLOAT = "std_msgs/msg/Float64"
 
