@@ -11,6 +11,7 @@ from seatrial.links.endpoints.url import other_end
 from seatrial.links.text import Inbox, Outbox
 from seatrial.model.component import NS, Component
 
+from .attached.peripherals import Peripherals
 from .board import DUTY, EDGE, EEPROM, MESSAGE, MORE, RESET, UART, WIDTH, Board, Event, Inputs
 from .boards import board_mcu
 from .build import build_host
@@ -20,7 +21,6 @@ from .mcus import CLOCK, Mcu
 from .measuring import check_ports, field_at_home, measured, signals
 from .part import Part, UartPart, part_failed
 from .parts.shelf import part_class
-from .peripherals import Peripherals
 from .platformio import project_of
 from .ports import ArduinoPorts
 from .pulses import Pulses

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import ipaddress
 import math
 from typing import ClassVar
 
+from seatrial.errors import InputError
 from seatrial.links.parameter_validation import start_date
 from seatrial.links.safe_state import UNSET, safe_state_bytes
 from seatrial.model.component import (
@@ -19,7 +21,6 @@ from seatrial.model.component import (
 from seatrial.model.unit_table import STANDARD_GRAVITY
 
 from .mcus import MCUS
-from .network import check_network
 from .sketch import read_flags
 from .wiring import (
     BLOCKS,
@@ -40,6 +41,15 @@ _UARTS = tuple(f"uart{i}" for i in range(UARTS))
 
 def _axes(letter: str, count: int = OTHERS) -> tuple[str, ...]:
     return tuple(f"{letter}{i}" for i in range(1, count + 1))
+
+
+def check_network(text: str) -> None:
+    """Raise InputError for what is no IPv4 address; '' is none."""
+    if text:
+        try:
+            ipaddress.IPv4Address(text)
+        except ValueError:
+            raise InputError(f"network: {text!r} is no IPv4 address, such as 127.0.0.2") from None
 
 
 class ArduinoPorts(Reachable, Component):

@@ -7,11 +7,11 @@ from collections.abc import Callable, Sequence
 from seatrial.links.unconnected import is_connected
 
 from .dds.participant import Participant
+from .dds.watched import Watched
 from .ports import Ros2Ports
 from .steering import Orders, VelocityOrders, goal_orders, unfollowed, wrench_orders
 from .thrusters import Actuator, actuators
 from .topics import ACTUATORS, COMMANDED, Names
-from .dds.watched import Watched
 
 Values = dict[str, float]
 

@@ -20,6 +20,8 @@ from seatrial.model.sampled import Sampled
 from . import faults
 from .bag import Bag
 from .commands import Commands
+from .dds.participant import Participant
+from .dds.services import Service
 from .diagnostics import diagnostics
 from .faults import NONE, Faults
 from .graph import Graph
@@ -27,10 +29,8 @@ from .instruments import Instruments
 from .lockstep import Lockstep, awaited
 from .mismatches import Mismatches
 from .outlet import Outlet
-from .dds.participant import Participant
 from .ports import ANGLED, CHANNELS, SHARED, UNITS, Ros2Ports
 from .published import Here
-from .dds.services import Service
 from .simulator import Simulator
 from .steering import Orders
 from .topics import Names

@@ -9,9 +9,9 @@ from typing import Any
 from seatrial.model.component import NS
 
 from .bag import Bag
-from .description import urdf
 from .dds.packing import packed
 from .dds.participant import Durability, Participant, Writer
+from .description import urdf
 from .ports import Ros2Ports
 from .published import BASE, MEASURED, Fields, Here, leg, measured, odometry, places, transforms
 from .topics import LATCHED, PUBLISHED, Names

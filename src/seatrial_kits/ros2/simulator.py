@@ -12,11 +12,11 @@ from seatrial.links.watchdog import Waiting
 from seatrial.physics.craft.kinematics import to_ned
 
 from .dds.action import StepsAction
-from .frames import enu
 from .dds.participant import Participant
+from .dds.services import Call, Handler, Service
+from .frames import enu
 from .ports import Ros2Ports
 from .published import MAP, pose
-from .dds.services import Call, Handler, Service
 
 PLAYING, PAUSED = 1, 2
 UNSUPPORTED, OK, NOT_FOUND, INCORRECT_STATE, FAILED = range(5)

@@ -12,9 +12,9 @@ from seatrial.model.component import NS, Input, Output, Parameter, terminal
 from seatrial.model.sampled import Sampled
 from seatrial.model.waypoints import MOST, Waypoints
 
-from .frames import quaternion
 from .dds.packing import packed
 from .dds.participant import HIGHEST_DOMAIN, Participant, Writer
+from .frames import quaternion
 from .vrx_scores import Gates, Score, StationKeeping, Wayfinding
 
 GOALS = tuple(f"goal{number}" for number in range(1, MOST + 1))

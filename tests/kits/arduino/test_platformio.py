@@ -145,5 +145,7 @@ def test_another_microcontroller_than_the_projects_is_refused(project):
 def test_what_an_esp32_alone_has_is_refused_of_another_board(key, value):
     board = Arduino("it")
     board.set(key, value)
-    with pytest.raises(InputError, match=rf"^it: {key}: '{value}' is for an ESP32 .* the Mega in host$"):
+    with pytest.raises(
+        InputError, match=rf"^it: {key}: '{value}' is for an ESP32 .* the Mega in host$"
+    ):
         board.initialise()

@@ -10,9 +10,9 @@ from scipy.spatial.transform import Rotation
 from seatrial import Simulation
 from seatrial.links.geodesy import Origin
 from seatrial_kits.ros2.component import Ros2
-from seatrial_kits.ros2.instruments import Instruments
 from seatrial_kits.ros2.dds.packing import packed
 from seatrial_kits.ros2.dds.participant import Participant
+from seatrial_kits.ros2.instruments import Instruments
 from seatrial_kits.ros2.published import MEASURED, Here, measured
 from seatrial_kits.ros2.topics import COMMANDED, PUBLISHED, Names
 

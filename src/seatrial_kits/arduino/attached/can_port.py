@@ -9,7 +9,7 @@ from seatrial_kits.can.frame import Frame
 from seatrial_kits.can.node import CanNode
 from seatrial_kits.can.operations import BitRate, Confirm, Transmit
 
-from .board import Inputs
+from ..board import Inputs
 
 CHANNEL = 0
 _MESSAGE = struct.Struct("<BBBI8s")

@@ -10,7 +10,7 @@ import struct
 from seatrial.errors import InputError, SimulationError
 from seatrial.links.hardware import check_host, check_listening
 
-from .board import Inputs
+from ..board import Inputs
 
 CHANNEL = 1
 _HEAD = struct.Struct("<BBHI")
@@ -19,15 +19,6 @@ _ADDRESS, _OPEN, _CLOSE, _PACKET = 0, 1, 2, 3
 _LARGEST = 1460
 _A_STEP = 64
 """Packets that a socket takes in at most in a step."""
-
-
-def check_network(text: str) -> None:
-    """Raise InputError for what is no IPv4 address; '' is none."""
-    if text:
-        try:
-            ipaddress.IPv4Address(text)
-        except ValueError:
-            raise InputError(f"network: {text!r} is no IPv4 address, such as 127.0.0.2") from None
 
 
 class Network:

@@ -5,11 +5,11 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+from ..board import MESSAGE, Event, Inputs
+from ..mcus import CLOCK
+from ..ports import ArduinoPorts
 from . import can_port, network
-from .board import MESSAGE, Event, Inputs
 from .flash import Flash
-from .mcus import CLOCK
-from .ports import ArduinoPorts
 
 
 class Peripherals:
