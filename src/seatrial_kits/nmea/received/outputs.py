@@ -24,10 +24,13 @@ SINGLE: dict[str, tuple[str, str]] = {
     "water_speed": ("m/s", "speed through the water, ahead"),
     "speed_over_ground": ("m/s", "speed over ground"),
     "depth": ("m", "depth of the water below the transducer"),
-    "depth_offset": ("m", "from the transducer up to the waterline; negative: down to the keel"),
+    "depth_offset": (
+        "m",
+        "distance from the transducer up to the waterline; negative: down to the keel",
+    ),
     "variation": ("rad", "magnetic variation, positive east"),
     "water_wind_speed": ("m/s", "speed of the wind over the water"),
-    "water_wind_angle": ("rad", "where that wind blows to from the bow, to starboard"),
+    "water_wind_angle": ("rad", "direction that this wind blows to from the bow, to starboard"),
     "current_speed": ("m/s", "speed of the current"),
     "cross_track": ("m", "cross-track error, positive to starboard of the leg"),
     "waypoint_distance": ("m", "distance to the waypoint"),
@@ -43,7 +46,7 @@ SINGLE: dict[str, tuple[str, str]] = {
 DIRECTIONS = {
     "heading": "true heading, clockwise from north",
     "course": "true course over ground, clockwise from north",
-    "current_direction": "where the current sets to, clockwise from north",
+    "current_direction": "direction that the current sets to, clockwise from north",
     "waypoint_bearing": "true bearing of the waypoint, clockwise from north",
     "leg_direction": "true direction of the leg, clockwise from north",
     "heading_to_steer": "heading to steer, clockwise from north",
@@ -99,7 +102,7 @@ def received_outputs(prefix: str) -> Any:
         add(name, unit, text)
         valid(name, f"the {text.partition(',')[0].partition(';')[0]}")
     add("attitude", "rad", "Euler angles, ZYX", axes=_EULER)
-    valid("attitude", "all three Euler angles")
+    valid("attitude", "the whole attitude")
     for name in ("roll", "pitch", "yaw"):
         valid(name, f"the {name}")
     add("position_n", "m", "position, north-east-down", axes=_NED)
