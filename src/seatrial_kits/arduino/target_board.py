@@ -75,12 +75,14 @@ def target_boards(sketch: Sketch) -> dict[str, list[str]]:
 def target_text(sketch: Sketch, family: str) -> str:
     """Return ``for the ESP32 (WiFi.h, ledcSetup)``, '' if nothing says so.
 
-    For a board of another family than the one at hand, its ``mcu`` stands behind.
+    For a board of another family than the one at hand, the option that selects it stands behind.
     """
     boards = target_boards(sketch)
     parts = [f"{board} ({', '.join(evidence[:4])})" for board, evidence in boards.items()]
     text = f"for the {' or '.join(parts)}" if parts else ""
-    return f"{text}: mcu is esp32 then" if list(boards) == ["ESP32"] and family != "esp32" else text
+    if list(boards) == ["ESP32"] and family != "esp32":
+        return f"{text}: take that board by --mcu esp32, or mcu=esp32 in a profile or rig"
+    return text
 
 
 def is_foreign(sketch: Sketch, family: str) -> bool:
