@@ -68,8 +68,8 @@ def test_what_is_no_local_variable_is_refused(fmu: Path, write, name: str) -> No
 
 
 def test_a_component_in_python_has_none(write) -> None:
-    path = write("rig.toml", 'step = "1 ms"\ncomponents.c = { fmu = "canbus", locals = ["x"] }\n')
-    with pytest.raises(InputError, match="canbus is a component in Python: the key 'locals' is"):
+    path = write("rig.toml", 'step = "1 ms"\ncomponents.c = { fmu = "compass", locals = ["x"] }\n')
+    with pytest.raises(InputError, match="compass is a component in Python: the key 'locals' is"):
         Simulation(path)
 
 
