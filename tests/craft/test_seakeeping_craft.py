@@ -79,6 +79,7 @@ def test_motions_in_waves_are_those_solved_in_frequency(omega, degrees):
         assert abs(off) < 0.025 * max(scale, abs(wanted[column]))
 
 
+@pytest.mark.slow
 def test_left_alone_it_loses_energy_to_its_waves_and_comes_to_rest():
     still = {"linear_damping_force": [0, 0, 0], "linear_damping_moment": [50.0, 0, 0]}
     craft = barge(**still, position_start=[0, 0, 0.05], attitude_start=[0.05, 0.05, 0])

@@ -81,6 +81,7 @@ def test_it_takes_energy_at_every_frequency_and_from_every_motion(body):
         assert np.abs(memory.response(np.array([1e-6]))).max() < 1e-5 * size
 
 
+@pytest.mark.slow
 def test_its_states_are_its_response():
     memory = fitted("barge_T020")[0]
     n = len(memory.omega)

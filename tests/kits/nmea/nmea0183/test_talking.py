@@ -96,6 +96,7 @@ def test_satellites_and_the_leg_that_is_followed():
     assert float(rmb.dest_true_bearing) == pytest.approx(360.0 - 6.34, abs=0.01)
 
 
+@pytest.mark.slow
 def test_sentences_for_plotters_and_autopilots():
     """The leg runs north, 100 m to port of the boat; she goes north at 1 m/s, 0.5 m/s west."""
     bench = Bench(**HOME, variation=-23.0 * DEG, date="2018-09-01")

@@ -256,6 +256,7 @@ def test_engines_navigation_and_surroundings(network):
     assert not node.get("bus_cross_track_valid")
 
 
+@pytest.mark.slow
 def test_other_ships(network):
     """Degrees north of the origin: 110574 m each at the equator (WGS 84)."""
     send(network, 129039, GNSS, userId=710000103, latitude=0.02, longitude=0.0, sog=3.0,
