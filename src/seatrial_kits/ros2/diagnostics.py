@@ -53,9 +53,7 @@ def diagnostics(
 
 def _criteria(verdicts: Mapping[str, str]) -> list[Mapping[str, Any]]:
     return [
-        _status(
-            f"trial: {name}", _SAID[state], _ERROR if state in ("broken", "missed") else _OK, {}
-        )
+        _status(f"trial: {name}", _SAID[state], _ERROR if state in _FAILED else _OK, {})
         for name, state in verdicts.items()
     ]
 
