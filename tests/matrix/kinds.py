@@ -139,6 +139,13 @@ _KINDS = {
         counter="frames_refused",
         excuses={"unplug": NO_CONNECTION},
     ),
+    "landing-target": Kind(
+        "landing-target",
+        Caller,
+        'link = "tcpin:127.0.0.1:{port}"',
+        counter="frames_refused",
+        excuses={"unplug": COME_AND_GO},
+    ),
     "mavlink": Kind(
         "mavlink",
         Caller,

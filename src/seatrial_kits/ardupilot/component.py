@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import shlex
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -12,13 +13,15 @@ from seatrial.errors import InputError, SimulationError
 from seatrial.links.endpoints.endpoint import report
 from seatrial.links.endpoints.udp import UdpListener
 from seatrial.links.endpoints.url import open_endpoints, other_end
-from seatrial.links.geodesy import Origin
+from seatrial.links.geodesy import Ned, Origin
 from seatrial.links.parameter_validation import start_us
 from seatrial.links.program import Program, check_program
 from seatrial.links.servos import read_servos
+from seatrial.links.truth import Truth
 from seatrial.links.vehicle_sensors import read_instruments
 from seatrial.links.watchdog import Watchdog
 from seatrial.model.component import Component
+from seatrial.physics.craft.kinematics import to_body
 
 from .lockstep import Lockstep
 from .packet import MOST_CHANNELS
@@ -52,7 +55,10 @@ class ArduPilot(ArduPilotPorts):
     `Lockstep` for what is repeated or comes from others.
 
     ArduSub's home is at altitude 0, wherever the lake is: its simulated pressure sensor feels
-    water below that only.
+    water below that only. ArduCopter gets the mean specific force since the frame before, from
+    the change of velocity: legs that meet a deck push for less than a step.
+
+    **Several firmwares** in one run each need a ``link`` and an ``instance`` of their own.
 
     **Conventions.** Position and velocity in {n} from ``latitude``, ``longitude``, ``altitude``,
     which is the firmware's home; rates and specific force in {b}, level at rest
@@ -111,6 +117,7 @@ class ArduPilot(ArduPilotPorts):
         whom = f"ArduPilot, which is to send to {where}"
         self._watchdog = Watchdog(self.name, whom, self.wait_limit)
         self._has_begun = self._armed = False
+        self._before: tuple[float, Ned] | None = None
         self._booted = t + BOOTED_S
 
     def step(self, t: float, h: float) -> None:
@@ -121,7 +128,7 @@ class ArduPilot(ArduPilotPorts):
         # The first time, and after an interruption, nothing waits for an answer yet.
         if self._wait():
             try:
-                answer = reply(t, self.true_motion(), self._earth, self._others())
+                answer = reply(t, self._motion(t), self._earth, self._others())
             except SimulationError as error:
                 raise SimulationError(f"{self.name}: {error}") from None
             self._lockstep.answer(answer)
@@ -190,7 +197,15 @@ class ArduPilot(ArduPilotPorts):
         if self.firmware == "sub":
             altitude = 0.0  # above it, its simulated pressure sensor is in the air
         home = (latitude, longitude, altitude, heading)
-        return arguments(port, home, h, self.speedup, defaults=defaults, serial0=self.serial0)
+        return arguments(
+            port,
+            home,
+            h,
+            self.speedup,
+            defaults=defaults,
+            serial0=self.serial0,
+            instance=round(self.instance),
+        )
 
     def simulated_instruments(self) -> list[Simulated]:
         """Return the firmware's parameters that follow from the sensors of the profile."""
@@ -230,6 +245,17 @@ class ArduPilot(ArduPilotPorts):
             self._firmware.check()
         self._watchdog.waiting()
 
+    def _motion(self, t: float) -> Truth:
+        """Return the motion to send at ``t``."""
+        truth = self.true_motion()
+        before, self._before = self._before, (t, truth.velocity_n)
+        if self.firmware != "copter" or before is None or t <= before[0]:
+            return truth
+        span = t - before[0]
+        mean = [(v - w) / span for v, w in zip(truth.velocity_n, before[1], strict=True)]
+        mean[2] -= self.gravity
+        return replace(truth, specific_force=to_body(truth.attitude, mean))
+
     def _others(self) -> dict[str, Any]:
         """Return what is sent beside the motion."""
         return {name: self._field(name) for name in self._fields if self._is_measured(name)}
@@ -260,12 +286,14 @@ def arguments(
     *,
     defaults: str = "",
     serial0: str = "",
+    instance: int = 0,
 ) -> list[str]:
     """Return the firmware's options.
 
     ``home`` is latitude, longitude and heading in degrees, with the altitude in m before the
     heading; ``step`` the communication step in s; ``defaults`` a parameter file, ``serial0`` the
-    device of its first serial port, each empty for its own.
+    device of its first serial port, each empty for its own; ``instance`` counts the firmwares of
+    one machine from 0.
     """
     latitude, longitude, altitude, heading = home
     options = [
@@ -273,6 +301,8 @@ def arguments(
         "--home", f"{latitude:.9f},{longitude:.9f},{altitude:g},{heading:.3f}",
         "--rate", f"{round(1.0 / step)}", "--speedup", f"{speedup:g}",
     ]  # fmt: skip
+    if instance:
+        options += ["--instance", f"{instance}", "--sysid", f"{instance + 1}"]
     given = {"--defaults": defaults, "--serial0": serial0}
     return [*options, *(word for key, text in given.items() if text for word in (key, text))]
 

@@ -24,7 +24,7 @@ from seatrial.model.component import (
 from .packet import MOST_CHANNELS
 from .reply import RANGES, read_fields
 
-LOOP_HZ = {"rover": 50.0, "sub": 400.0}
+LOOP_HZ = {"rover": 50.0, "sub": 400.0, "copter": 400.0}
 """Main loop of each firmware: it needs its sensors at least as often."""
 RC_CHANNELS = 12
 
@@ -47,6 +47,13 @@ class ArduPilotPorts(Logging, Reachable, TrueMotion):
     program = Parameter("", "1", "the firmware's program, to be started; empty: you start it")
     serial0 = Parameter(
         "", "1", "device of its first serial port, for a ground station; empty: its own"
+    )
+    instance = Parameter(
+        0.0,
+        "1",
+        "of several firmwares on one machine: adds 10 to its own ports, 1 to its MAVLink number",
+        min=0.0,
+        max=200.0,
     )
     defaults = Parameter("", "1", "file of the firmware's parameters", role="file")
     speedup = Parameter(

@@ -176,7 +176,9 @@ def test_a_step_of_a_tenth_of_a_second_is_refused(made):
         made().advance(0.0, 0.1)
 
 
-@pytest.mark.parametrize(("firmware", "step"), [("rover", 0.02), ("sub", 0.0025)])
+@pytest.mark.parametrize(
+    ("firmware", "step"), [("rover", 0.02), ("sub", 0.0025), ("copter", 0.0025)]
+)
 def test_a_step_slower_than_the_firmware_is_warned_of(made, caplog, firmware, step):
     for slower in (1.0, 2.0):
         caplog.clear()
@@ -235,6 +237,30 @@ def test_it_says_what_to_start_and_who_is_being_waited_for(made, caplog, monkeyp
     assert f"ardurover --model JSON:127.0.0.1 --sim-port-out {port} " in said
     assert "--home -31.780000000,-52.260000000,0,270.000 --rate 100 --speedup 1" in said
     assert f"waiting for ArduPilot, which is to send to 127.0.0.1:{port}, since " in said
+
+
+def test_a_copter_gets_the_mean_of_what_it_felt_since_the_frame_before(made):
+    component = made(firmware="copter")
+    flight = Flight(component, [()] * 2)
+    component.set("true_attitude", (0.0, 0.3, 0.0))
+    component.advance(0.0, 0.002)
+    # From rest to 0.1 m/s upwards along its own z, in a step of which the end has no acceleration.
+    component.set("true_velocity", (0.0, 0.0, -0.1))
+    component.advance(0.002, 0.002)
+    first, second = flight.end()
+    level = 9.81 * math.sin(0.3), 0.0, -9.81 * math.cos(0.3)
+    assert first.vector("accel_body", "imu") == pytest.approx(level)
+    expected = level[0], 0.0, level[2] - 50.0
+    assert second.vector("accel_body", "imu") == pytest.approx(expected)
+
+
+def test_a_second_firmware_has_ports_and_a_number_of_its_own(made, caplog):
+    component = made(instance=1.0)
+    with caplog.at_level(logging.WARNING):
+        flight = Flight(component, [()])
+        component.advance(0.0, 0.01)
+        flight.end()
+    assert "--instance 1 --sysid 2" in caplog.text
 
 
 def test_a_request_to_end_ends_the_wait(made):

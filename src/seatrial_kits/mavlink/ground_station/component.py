@@ -19,7 +19,7 @@ from seatrial.model.waypoints import NED, Place, Waypoints
 from ..codec import Codec, Message
 from .conversation import ASK_AGAIN_S, Conversation
 from .dialects import Dialect
-from .errand import Errand, home_of, mission
+from .errand import LAST, Errand, home_of, mission
 
 SYSTEM, COMPONENT = 255, mavlink.MAV_COMP_ID_MISSIONPLANNER
 HEARTBEAT_S = 1.0
@@ -59,11 +59,15 @@ class GroundStation(Waypoints, Sampled):
     the mission. Everything is repeated until it is answered. What the vehicle takes for its home
     is where it was when its estimator got ready: the waypoints do not depend on that.
 
+    The last waypoint is passed as the others are, or by ``last`` one to "loiter" at
+    (NAV_LOITER_UNLIM), or to "land" at (NAV_LAND). A multirotor takes off to the height of the
+    first waypoint (NAV_TAKEOFF).
+
     ``estimate`` is where the vehicle says that it is (GLOBAL_POSITION_INT, at 2 Hz), ``home``
     what it takes for its home, both in {n}, m; ``estimated`` whether it has said either.
 
-    For boats and rovers of ArduPilot and PX4, for submarines of ArduPilot, and for vehicles that
-    present themselves as such.
+    For boats and rovers of ArduPilot and PX4, for submarines and multirotors of ArduPilot, and for
+    vehicles that present themselves as such.
 
     ``failsafe`` is true from the first heartbeat on that says CRITICAL or EMERGENCY, and where
     the vehicle leaves the mission's mode or disarms before its last waypoint.
@@ -93,6 +97,8 @@ class GroundStation(Waypoints, Sampled):
         0.0, "rad", "of the origin of {n}, WGS 84", min=-math.pi, max=math.pi, role="home"
     )
     link = Parameter("", "1", "where the vehicle is; empty: at its address", check=_check_link)
+
+    last = Parameter("waypoint", "1", "what the last waypoint is", choices=LAST)
 
     address = Input(
         "1", "what the vehicle is reached at, by TCP among others", type=str, optional=True
@@ -189,7 +195,9 @@ class GroundStation(Waypoints, Sampled):
     def _begin(self) -> None:
         self._codec = Codec(SYSTEM, COMPONENT)
         self._conversation = Conversation(self._send)
-        self._errand: Errand = mission(self._conversation, self._places, self.radius, self._origin)
+        self._errand: Errand = mission(
+            self._conversation, self._places, self.radius, self._origin, self.last
+        )
         self._doing, self._started = "", None
         self._armed, self._mode, self._reached, self._failsafe = False, 0, 0, False
         self._estimate: Place | None = None
@@ -244,8 +252,8 @@ class GroundStation(Waypoints, Sampled):
         """Note what a message says of the mission."""
         kind = message.get_type()
         if kind == "MISSION_ITEM_REACHED":
-            counted = message.seq + (self._started is not None and not self._started.counts_home)
-            self._reached = max(self._reached, counted)
+            before = 1 if self._started is None else self._started.before
+            self._reached = max(self._reached, message.seq - before + 1)
         if kind == "PARAM_VALUE":
             self._given[message.param_id] = message.param_value
         if kind == "GLOBAL_POSITION_INT" and (message.lat or message.lon):  # both 0: no fix yet

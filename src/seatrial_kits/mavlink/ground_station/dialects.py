@@ -11,7 +11,9 @@ from seatrial.errors import SimulationError
 from ..codec import Message
 
 _BOATS = (mavlink.MAV_TYPE_GROUND_ROVER, mavlink.MAV_TYPE_SURFACE_BOAT)
+_COPTERS = (mavlink.MAV_TYPE_QUADROTOR, mavlink.MAV_TYPE_HEXAROTOR, mavlink.MAV_TYPE_OCTOROTOR)
 _AUTO_ROVER, _AUTO_SUB, _DEPTH_HOLD = 10, 3, 2
+_AUTO_COPTER, _GUIDED_COPTER = 3, 4
 _PX4_MAIN_AUTO, _PX4_SUB_MISSION = 4, 4
 
 
@@ -26,15 +28,30 @@ class Dialect:
     estimate: str
     """Message with the estimator's flags."""
     counts_home: bool
-    """Whether item 0 is home, and the first waypoint 1."""
+    """Whether item 0 is home."""
     arms_in: float | None = None
     """Mode in which it arms, where that is not the one it is in."""
     mode_first: bool = False
     """Whether it arms in the mission's mode, and starts it so."""
+    takes_off: bool = False
+    """Whether the first item after home takes it to the height of the first waypoint."""
+
+    @property
+    def before(self) -> int:
+        """Number of items before the first waypoint."""
+        return self.counts_home + self.takes_off
 
 
 _ROVER = Dialect((_AUTO_ROVER,), _AUTO_ROVER, "EKF_STATUS_REPORT", counts_home=True)
 _SUB = Dialect((_AUTO_SUB,), _AUTO_SUB, "EKF_STATUS_REPORT", counts_home=True, arms_in=_DEPTH_HOLD)
+_COPTER = Dialect(
+    (_AUTO_COPTER,),
+    _AUTO_COPTER,
+    "EKF_STATUS_REPORT",
+    counts_home=True,
+    arms_in=_GUIDED_COPTER,
+    takes_off=True,
+)
 _PX4 = Dialect(
     (_PX4_MAIN_AUTO, _PX4_SUB_MISSION),
     _PX4_MAIN_AUTO << 16 | _PX4_SUB_MISSION << 24,
@@ -45,6 +62,7 @@ _PX4 = Dialect(
 DIALECTS = {
     **{(mavlink.MAV_AUTOPILOT_ARDUPILOTMEGA, kind): _ROVER for kind in _BOATS},
     (mavlink.MAV_AUTOPILOT_ARDUPILOTMEGA, mavlink.MAV_TYPE_SUBMARINE): _SUB,
+    **{(mavlink.MAV_AUTOPILOT_ARDUPILOTMEGA, kind): _COPTER for kind in _COPTERS},
     **{(mavlink.MAV_AUTOPILOT_PX4, kind): _PX4 for kind in _BOATS},
 }
 """By MAV_AUTOPILOT and MAV_TYPE."""
@@ -60,8 +78,8 @@ def dialect_of(heartbeat: Message) -> Dialect:
         )
         raise SimulationError(
             f"the vehicle is of MAV_TYPE {heartbeat.type} with MAV_AUTOPILOT "
-            f"{heartbeat.autopilot}; missions are for rovers, boats and submarines {ardupilot} of "
-            f"ArduPilot ({mavlink.MAV_AUTOPILOT_ARDUPILOTMEGA}), and for rovers and boats {px4} of "
-            f"PX4 ({mavlink.MAV_AUTOPILOT_PX4})"
+            f"{heartbeat.autopilot}; missions are for rovers, boats, submarines and multirotors "
+            f"{ardupilot} of ArduPilot ({mavlink.MAV_AUTOPILOT_ARDUPILOTMEGA}), and for rovers and "
+            f"boats {px4} of PX4 ({mavlink.MAV_AUTOPILOT_PX4})"
         )
     return found

@@ -23,6 +23,13 @@ _POSITION = mavlink.EKF_POS_HORIZ_ABS
 _NEEDED = {"SYS_STATUS": 1.0, "HOME_POSITION": 0.5, "GLOBAL_POSITION_INT": 2.0}
 """What is asked for beside the estimator's flags, Hz of simulated time."""
 _FLAGS_HZ = 1.0
+_ITEMS = {
+    "waypoint": mavlink.MAV_CMD_NAV_WAYPOINT,
+    "loiter": mavlink.MAV_CMD_NAV_LOITER_UNLIM,
+    "land": mavlink.MAV_CMD_NAV_LAND,
+}
+LAST = tuple(_ITEMS)
+"""Of the last waypoint: passed, held until something else is ordered, or landed on."""
 FURTHEST_M = 50e3
 """Between the origin of {n} and the vehicle's home: further off, one of the two is wrong."""
 
@@ -31,10 +38,13 @@ Errand = Generator[str, None, Dialect]
 """Yields what it waits for, and returns how the mission was started."""
 
 
-def mission(c: Conversation, places: Sequence[Place], radius: float, origin: Origin) -> Errand:
+def mission(
+    c: Conversation, places: Sequence[Place], radius: float, origin: Origin, last: str
+) -> Errand:
     """Wait for the vehicle, upload waypoints in {n}, arm, and start the mission.
 
-    ``origin`` is that of {n}; ``radius`` in m goes with each waypoint, 0 is the vehicle's own.
+    ``origin`` is that of {n}; ``radius`` in m goes with each waypoint, 0 is the vehicle's own;
+    ``last`` of `LAST` is how the last one ends.
     Raises SimulationError for what it does not do in time, for one that takes no missions
     (`dialect_of`), and for one whose home is far from ``origin``.
     """
@@ -47,7 +57,7 @@ def mission(c: Conversation, places: Sequence[Place], radius: float, origin: Ori
         lambda: _ask_for_state(c, dialect),
     )
     require_near(c.newest["HOME_POSITION"], origin)
-    yield from _upload(c, _items(c, places, radius, dialect, origin))
+    yield from _upload(c, _items(c, places, radius, dialect, origin, last))
     if dialect.arms_in is not None:
         yield from c.command(_SET_MODE, "mode to arm in", 1.0, dialect.arms_in)
     starts = [
@@ -95,13 +105,22 @@ def _is_ready(c: Conversation, dialect: Dialect) -> bool:
 
 
 def _items(
-    c: Conversation, places: Sequence[Place], radius: float, dialect: Dialect, origin: Origin
+    c: Conversation,
+    places: Sequence[Place],
+    radius: float,
+    dialect: Dialect,
+    origin: Origin,
+    last: str,
 ) -> list[Message]:
-    """Return the mission, with home as item 0 where the firmware has it so."""
-    frame, kind = mavlink.MAV_FRAME_GLOBAL_RELATIVE_ALT_INT, mavlink.MAV_CMD_NAV_WAYPOINT
+    """Return the mission, with home as item 0 and a take-off where the firmware has it so."""
+    frame, passed = mavlink.MAV_FRAME_GLOBAL_RELATIVE_ALT_INT, mavlink.MAV_CMD_NAV_WAYPOINT
+    kinds = [(passed, place) for place in places[:-1]] + [(_ITEMS[last], places[-1])]
+    if dialect.takes_off:
+        kinds.insert(0, (mavlink.MAV_CMD_NAV_TAKEOFF, (0.0, 0.0, places[0][2])))
+    if dialect.counts_home:
+        kinds.insert(0, (passed, (0.0, 0.0, 0.0)))
     items = []
-    first = [(0.0, 0.0, 0.0)] if dialect.counts_home else []
-    for number, place in enumerate([*first, *places]):
+    for number, (kind, place) in enumerate(kinds):
         latitude, longitude, height = origin.geodetic(place)
         at = (round(latitude * 1e7), round(longitude * 1e7), height)
         parameters = (0, radius, 0, 0)

@@ -201,7 +201,7 @@ def test_a_mission_that_is_refused_ends_the_run(bench):
     [
         (mavlink.MAV_AUTOPILOT_PX4, mavlink.MAV_TYPE_SUBMARINE),
         (mavlink.MAV_AUTOPILOT_GENERIC, mavlink.MAV_TYPE_SURFACE_BOAT),
-        (mavlink.MAV_AUTOPILOT_ARDUPILOTMEGA, mavlink.MAV_TYPE_QUADROTOR),
+        (mavlink.MAV_AUTOPILOT_ARDUPILOTMEGA, mavlink.MAV_TYPE_FIXED_WING),
     ],
 )
 def test_other_vehicles_are_refused(bench, autopilot, kind):
@@ -257,6 +257,34 @@ def test_a_submarine_arms_where_it_is_and_has_manual_control_at_rest(bench):
     manual = [m for m in vehicle.received if m.get_type() == "MANUAL_CONTROL"]
     assert {(m.x, m.y, m.z, m.r, m.buttons) for m in manual} == {(0, 0, 500, 0, 0)}
     assert len(manual) >= 8
+
+
+def test_a_multirotor_takes_off_and_lands_at_the_last_waypoint():
+    bench = Bench(last="land", waypoint_1=(6.0, 0.0, -5.0))
+    vehicle = bench.vehicle()
+    vehicle.kind = mavlink.MAV_TYPE_QUADROTOR
+    bench.run(vehicle, 10.0)
+    commands = [vehicle.items[number].command for number in range(5)]
+    assert commands[1:] == [22, 16, 16, 21]  # take off, two waypoints, land: common.xml
+    assert vehicle.items[1].z == 5.0
+    modes = [int(m.param2) for m in vehicle.received if getattr(m, "command", 0) == 176]
+    assert modes == [4, 3]  # guided, auto: ArduCopter's numbers
+    for seq, reached in ((1, 0), (2, 1), (3, 2), (4, 3)):
+        vehicle.reach(seq)
+        bench.run(vehicle, 0.5)
+        assert bench.station.get("reached") == reached
+    vehicle.armed = False
+    bench.run(vehicle, 2.0)
+    assert not bench.station.get("failsafe")
+    bench.close()
+
+
+def test_a_boat_loiters_at_the_last_waypoint():
+    bench = Bench(last="loiter", count=1.0)
+    vehicle = bench.vehicle()
+    bench.run(vehicle, 10.0)
+    assert [vehicle.items[number].command for number in (0, 1)] == [16, 17]
+    bench.close()
 
 
 def test_instruments_are_taken_and_given_back(bench):
