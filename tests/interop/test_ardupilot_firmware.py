@@ -1,6 +1,6 @@
 """Missions of ArduPilot's own firmware, where SEATRIAL_ARDUPILOT names the folder of its programs.
 
-They are ``ardurover`` and ``ardusub``, built from their public source for SITL. They listen at port
+They are ``ardurover``, ``ardusub`` and ``arducopter``, built from their public source for SITL. They listen at port
 5760 of every interface: each mission has a network of its own.
 """
 
@@ -133,6 +133,27 @@ def test_a_new_vehicle_goes_round_too(
     done = seatrial("new", "vehicle", "my-own", "--like", like, cwd=tmp_path)
     assert done.returncode == 0, done.stderr
     rounded("my-own", firmware, tmp_path / "run", *options, cwd=tmp_path)
+
+
+@pytest.mark.skipif(not Path(FOLDER, "arducopter").is_file(), reason="no arducopter there")
+@pytest.mark.parametrize(("drone", "seed"), [("huauv", 1), ("huauv", 2), ("huauv", 3), ("x500", 1)])
+def test_a_copter_lands_on_a_boat_each_under_its_own_firmware(
+    drone: str, seed: int, tmp_path: Path
+) -> None:
+    rover, copter = (Path(FOLDER, f"ardu{name}").resolve() for name in ("rover", "copter"))
+    command = [
+        SEATRIAL, "run", "hydrone-drone-ardupilot", "--engine", "native", "--set", f"seed={seed}",
+        "--autopilot", f"ardupilot={rover}", "--choose", f"copter={copter}", "--choose",
+        f"drone={drone}", "--out", tmp_path / "run",
+        "--set", f"drone.ardupilot.speedup={SPEEDUP}",
+        "--set", f"keeper.firmware.sitl.ardupilot.speedup={SPEEDUP}",
+    ]  # fmt: skip
+    quoted = subprocess.list2cmdline(list(map(str, command)))
+    done = subprocess.run(alone(quoted), cwd=ROOT, capture_output=True, text=True, timeout=900)
+    # Status 0: on the pad within 0.30 m, at less than 1 m/s, at rest there 4 s later.
+    assert done.returncode == 0, done.stdout + done.stderr
+    for name in ("keeper.firmware.sitl.ardupilot", "drone.ardupilot"):
+        assert list((tmp_path / "run" / name / "logs").glob("*.BIN"))
 
 
 def test_log_and_record_have_one_clock(tmp_path: Path) -> None:
