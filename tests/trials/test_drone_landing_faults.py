@@ -3,6 +3,7 @@
 import pytest
 
 import seatrial
+from tests.kit import needs_kits
 
 STERN_WIND = {
     "wind.mean_speed": "8 m/s",
@@ -34,6 +35,7 @@ def test_it_lands_whatever_fails(fault, seed, go_arounds, tmp_path):
     assert result.signals["drone.landing.go_arounds"][-1] == go_arounds
 
 
+@needs_kits("campaigns")
 @pytest.mark.long
 def test_nothing_falls_in_the_campaign_of_faults(tmp_path):
     result = seatrial.run_campaign("drone-landing-faults", out=tmp_path / "run", engine="native")
