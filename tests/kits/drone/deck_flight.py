@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from seatrial.control.deck_landing.landing_control import DeckLandingControl
+from seatrial_kits.drone.landing.landing_control import DeckLandingControl
 from tests.devices.running import started
 
 H = 0.01

@@ -6,8 +6,8 @@ import math
 from collections.abc import Sequence
 from typing import ClassVar
 
-from ...model.component import Component, Input, Output, Parameter, terminal
-from ..craft.kinematics import Vector3, cross, rotation, to_body, to_ned
+from seatrial.model.component import Component, Input, Output, Parameter, terminal
+from seatrial.physics.craft.kinematics import Vector3, cross, rotation, to_body, to_ned
 
 _EULER = ("phi", "theta", "psi")
 _AIRBORNE = 0.1

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from tests.control.deck_flight import Flight, H, at_rest
+from tests.kits.drone.deck_flight import Flight, H, at_rest
 
 TRACK, WAIT, DESCEND, LANDED, GO_AROUND, ABORT = 3.0, 4.0, 5.0, 6.0, 7.0, 8.0
 FEET = 0.25  # m, below the CG

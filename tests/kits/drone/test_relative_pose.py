@@ -5,8 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from seatrial.devices.deck_report import DeckReport
-from seatrial.devices.relative_pose import RelativePose
+from seatrial_kits.drone.deck_report import DeckReport
+from seatrial_kits.drone.relative_pose import RelativePose
 
 EXACT = {"noise_floor": 0.0, "noise_share": 0.0, "attitude_error": 0.0, "lost_time": 0.0}
 

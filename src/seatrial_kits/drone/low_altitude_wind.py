@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 from typing import ClassVar
 
-from ...model.component import Noise, Output, Parameter
-from ...model.sampled import Sampled
-from ...model.waypoints import NED
+from seatrial.model.component import Noise, Output, Parameter
+from seatrial.model.sampled import Sampled
+from seatrial.model.waypoints import NED
 
 _FOOT = 0.3048
 _HEIGHT = 20.0  # ft

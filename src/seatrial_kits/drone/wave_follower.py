@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from ...errors import InputError
+from seatrial.errors import InputError
 
 STEEPNESS = 0.04
 """2 pi Hs / (g Tp^2) of a sea whose period is not given."""

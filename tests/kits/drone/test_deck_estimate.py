@@ -5,8 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from seatrial.control.deck_landing.prediction import PER_PERIOD, WINDOW
-from tests.control.deck_flight import Flight, H, at_rest
+from seatrial_kits.drone.landing.prediction import PER_PERIOD, WINDOW
+from tests.kits.drone.deck_flight import Flight, H, at_rest
 
 PAD = (1.0, -2.0, -0.3)
 

@@ -9,12 +9,12 @@ from typing import Any, ClassVar
 
 import casadi as ca
 
-from ...model.component import Input, Parameter, terminal
-from ...model.plant import Plant, State
-from ...model.ports import Output
-from ...model.terminals import MOTION
-from .legs import Legs, inside
-from .symbolic import rotation_matrix
+from seatrial.model.component import Input, Parameter, terminal
+from seatrial.model.plant import Plant, State
+from seatrial.model.ports import Output
+from seatrial.model.terminals import MOTION
+from seatrial.physics.craft.legs import Legs, inside
+from seatrial.physics.craft.symbolic import rotation_matrix
 
 ROTORS = ("r1", "r2", "r3", "r4")
 PLACES = ((1, 1), (-1, -1), (1, -1), (-1, 1))

@@ -7,9 +7,10 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import ClassVar
 
-from ...model.component import Component, Noise, Output, Parameter, terminal
-from ...model.waypoints import NED
-from ..craft.kinematics import cross, to_body, to_ned
+from seatrial.model.component import Component, Noise, Output, Parameter, terminal
+from seatrial.model.waypoints import NED
+from seatrial.physics.craft.kinematics import cross, to_body, to_ned
+
 from .wave_follower import Follower, drawn, moved, period_of, read
 
 

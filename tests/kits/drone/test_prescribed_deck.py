@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from seatrial.errors import InputError
-from seatrial.physics.environment.low_altitude_wind import LowAltitudeWind
-from seatrial.physics.environment.prescribed_deck import PrescribedDeck
+from seatrial_kits.drone.low_altitude_wind import LowAltitudeWind
+from seatrial_kits.drone.prescribed_deck import PrescribedDeck
 
-HERE = Path(__file__).parents[1] / "reference" / "drone"
+HERE = Path(__file__).parents[2] / "reference" / "drone"
 
 
 def started(component, **values):

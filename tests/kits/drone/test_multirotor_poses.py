@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from seatrial.physics.craft.multirotor import Multirotor
+from seatrial_kits.drone.multirotor import Multirotor
 from tests.devices.running import started
 
 G, RHO, DOWN = 9.81, 1.225, np.array([0.0, 0.0, 1.0])

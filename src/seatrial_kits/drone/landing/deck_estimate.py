@@ -6,8 +6,9 @@ import math
 from collections.abc import Sequence
 from typing import ClassVar
 
-from ...model.component import Component, Input, Parameter, terminal
-from ...model.waypoints import NED
+from seatrial.model.component import Component, Input, Parameter, terminal
+from seatrial.model.waypoints import NED
+
 from . import prediction, tracking
 from .prediction import PER_PERIOD, WINDOW
 

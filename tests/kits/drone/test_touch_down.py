@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from seatrial.physics.environment.touch_down import TouchDown
+from seatrial_kits.drone.touch_down import TouchDown
 from tests.devices.running import started
 
 HIGH = {"position": [0.0, 0.0, -2.0], "legs_down": 0.0}

@@ -6,10 +6,10 @@ import math
 from collections.abc import Sequence
 from typing import ClassVar
 
-from ..model.component import Input, Parameter, terminal
-from ..model.waypoints import NED
-from ..physics.craft.kinematics import cross, to_ned
-from .sensor import Derived, Measured, Sensor, Value
+from seatrial.devices.sensor import Derived, Measured, Sensor, Value
+from seatrial.model.component import Input, Parameter, terminal
+from seatrial.model.waypoints import NED
+from seatrial.physics.craft.kinematics import cross, to_ned
 
 _DEG = math.pi / 180.0
 

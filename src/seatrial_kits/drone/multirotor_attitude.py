@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 from typing import ClassVar
 
-from ..model.component import Input, Output, Parameter, terminal
-from ..model.sampled import Sampled
-from ..physics.craft.kinematics import cross, rotation
+from seatrial.model.component import Input, Output, Parameter, terminal
+from seatrial.model.sampled import Sampled
+from seatrial.physics.craft.kinematics import cross, rotation
 
 _ROTORS = ("r1", "r2", "r3", "r4")
 _PLACES = ((1, 1), (-1, -1), (1, -1), (-1, 1))

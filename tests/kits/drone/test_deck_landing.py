@@ -6,12 +6,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from seatrial.control.deck_landing import laws, prediction, tracking
-from seatrial.control.deck_landing.landing_control import DeckLandingControl
-from seatrial.control.multirotor_attitude import MultirotorAttitude
-from seatrial.physics.environment.wave_follower import drawn, moved, period_of
+from seatrial_kits.drone.landing import laws, prediction, tracking
+from seatrial_kits.drone.landing.landing_control import DeckLandingControl
+from seatrial_kits.drone.multirotor_attitude import MultirotorAttitude
+from seatrial_kits.drone.wave_follower import drawn, moved, period_of
 
-HERE = Path(__file__).parents[1] / "reference" / "drone"
+HERE = Path(__file__).parents[2] / "reference" / "drone"
 SIZES = {"hydrone": ((1.168, 0.517, 0.043), 0.2), "wamv": ((4.05, 2.44, 0.15), 1.0)}
 
 

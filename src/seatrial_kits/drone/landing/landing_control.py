@@ -6,10 +6,11 @@ import math
 from collections.abc import Sequence
 from typing import Any, ClassVar
 
-from ...model.component import Input, Output, Parameter, terminal
-from ...model.sampled import Sampled
-from ...model.waypoints import NED
-from ...physics.craft.kinematics import to_ned
+from seatrial.model.component import Input, Output, Parameter, terminal
+from seatrial.model.sampled import Sampled
+from seatrial.model.waypoints import NED
+from seatrial.physics.craft.kinematics import to_ned
+
 from . import laws
 from .deck_estimate import DeckEstimate
 from .tracking import Rows

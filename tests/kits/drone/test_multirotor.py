@@ -7,9 +7,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from seatrial.physics.craft.multirotor import Multirotor
+from seatrial_kits.drone.multirotor import Multirotor
 
-HERE = Path(__file__).parents[1] / "reference" / "drone"
+HERE = Path(__file__).parents[2] / "reference" / "drone"
 CLOSED = json.loads((HERE / "closed-forms.json").read_text())
 HOVER = CLOSED["hover speed [rad/s]"]
 K_T, K_Q = CLOSED["k_T [N s2/rad2]"], CLOSED["k_Q [N m s2/rad2]"]

@@ -7,7 +7,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ...model.component import Component, Parameter
+from seatrial.model.component import Component, Parameter
+
 from . import laws, prediction
 from .deck_estimate import DeckEstimate
 

@@ -5,8 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from seatrial.control.deck_landing import laws
-from tests.control.deck_flight import Flight, at_rest
+from seatrial_kits.drone.landing import laws
+from tests.kits.drone.deck_flight import Flight, at_rest
 
 T_P = 2.1  # s: a sample every 0.15 s, 70 of them in 10.35 s
 STEP = 0.05

@@ -6,10 +6,10 @@ import math
 from collections.abc import Sequence
 from typing import ClassVar
 
-from ..model.component import Input, Parameter, terminal
-from ..model.waypoints import NED
-from ..physics.craft.kinematics import Vector3, cross, to_body, to_ned
-from .sensor import Derived, Measured, Sensor, Value
+from seatrial.devices.sensor import Derived, Measured, Sensor, Value
+from seatrial.model.component import Input, Parameter, terminal
+from seatrial.model.waypoints import NED
+from seatrial.physics.craft.kinematics import Vector3, cross, to_body, to_ned
 
 _DEG = math.pi / 180.0
 _CHAIN, _PLACE, _ERROR = 3, 4, 5

@@ -10,7 +10,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ...physics.sea.numbers import Array
+from seatrial.physics.sea.numbers import Array
 
 ORDER = 16
 WINDOW = 120
