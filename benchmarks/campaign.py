@@ -39,7 +39,7 @@ count = {count}
 """
 _BARE = """
 import json, sys, time
-from seatrial.trial.campaigns.campaign import load_campaign
+from seatrial_kits.campaigns.campaign import load_campaign
 from seatrial.trial.running.hooks import Hooks
 from seatrial.trial.running.preparation import prepare
 

@@ -29,16 +29,16 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from seatrial.trial.campaigns import sweep
-from seatrial.trial.campaigns.campaign import load_campaign
-from seatrial.trial.campaigns.ended import Ended
 from seatrial.trial.running.measuring import Measured
+from seatrial_kits.campaigns import sweep
+from seatrial_kits.campaigns.campaign import load_campaign
+from seatrial_kits.campaigns.ended import Ended
 
 from .campaign import CAMPAIGN
 from .pages import write_measured
 
 TASK_S = 2.0
-"""Wall time of a task of short cases, as `seatrial.trial.campaigns.cluster` has it."""
+"""Wall time of a task of short cases, as `seatrial_kits.campaigns.cluster` has it."""
 WAITING = 4
 """Tasks under way for each place, as there."""
 _VERDICT = {

@@ -13,7 +13,7 @@ from pathlib import Path
 
 from playwright.sync_api import sync_playwright
 
-from seatrial.trial.campaigns.results.page import write_table_page
+from seatrial_kits.campaigns.results.page import write_table_page
 
 IMAGES = Path(__file__).resolve().parent / "images"
 _SEATRIAL = "from seatrial.cli import main; main()"

@@ -12,11 +12,11 @@ from parts import elsewhere, part
 from parts.markdown import fixed, shown_number, table
 from seatrial.physics.craft.marine_craft import MarineCraft
 from seatrial.system.parameters import load_vehicle
-from seatrial.trial.campaigns.campaign import load_campaign
-from seatrial.trial.campaigns.in_folders import run_campaign
 from seatrial.trial.files.trial import load_trial
 from seatrial.trial.records.run_folder import Run, load_run
 from seatrial.trial.running.run import run_trial
+from seatrial_kits.campaigns.campaign import load_campaign
+from seatrial_kits.campaigns.in_folders import run_campaign
 from seatrial_kits.identify.damping import HullForm, damping
 from seatrial_kits.identify.hull_file import estimate_damping
 

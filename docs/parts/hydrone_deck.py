@@ -12,9 +12,9 @@ import numpy as np
 from parts import elsewhere, part
 from parts.hydrone import PHASE_NAMES, SPOOL_UP
 from parts.markdown import fixed, table
-from seatrial.trial.campaigns.campaign import load_campaign
-from seatrial.trial.campaigns.in_folders import run_campaign
 from seatrial.trial.records.run_folder import Run, load_run
+from seatrial_kits.campaigns.campaign import load_campaign
+from seatrial_kits.campaigns.in_folders import run_campaign
 
 _BOW = 0.638
 _LIFT_OFF = 10.5

@@ -9,11 +9,11 @@ from parts import elsewhere, part
 from parts.markdown import table
 from seatrial.model.readable import number
 from seatrial.shipped import available
-from seatrial.trial.campaigns.campaign import load_campaign
-from seatrial.trial.campaigns.in_folders import run_campaign
 from seatrial.trial.files.trial import load_trial
 from seatrial.trial.records.run_folder import load_run
 from seatrial.trial.running.run import run_trial
+from seatrial_kits.campaigns.campaign import load_campaign
+from seatrial_kits.campaigns.in_folders import run_campaign
 from seatrial_kits.design.heading import design_heading
 from seatrial_kits.design.heading_page import rows as design_rows
 from seatrial_kits.design.heading_page import stability

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from parts import elsewhere, part
 from parts.markdown import table
-from seatrial.trial.campaigns.campaign import load_campaign
-from seatrial.trial.campaigns.cases import Case
-from seatrial.trial.campaigns.in_folders import run_campaign
 from seatrial.trial.running.run import Result
+from seatrial_kits.campaigns.campaign import load_campaign
+from seatrial_kits.campaigns.cases import Case
+from seatrial_kits.campaigns.in_folders import run_campaign
 
 
 @part("vehicles-campaign")

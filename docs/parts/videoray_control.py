@@ -11,9 +11,9 @@ from parts.markdown import table
 from parts.settings import parameters, variants
 from parts.ships import verdicts
 from seatrial.model.readable import number
-from seatrial.trial.campaigns.campaign import load_campaign
-from seatrial.trial.campaigns.in_folders import run_campaign
 from seatrial.trial.records.run_folder import load_run
+from seatrial_kits.campaigns.campaign import load_campaign
+from seatrial_kits.campaigns.in_folders import run_campaign
 
 part("videoray-surface-parameters")(partial(parameters, "videoray-surface"))
 part("videoray-surface-variants")(partial(variants, "videoray-surface"))

@@ -34,7 +34,6 @@ CONTENT = "content"
 """Folder beside the manifest with the kit's vehicles, rigs, trials, campaigns and profiles."""
 
 LIBRARIES = {
-    "pydoe": "seatrial[design]",
     "pygraphviz": "seatrial[diagrams]",
     "yaml": "seatrial[interchange]",
 }

@@ -16,6 +16,9 @@ import pytest
 import seatrial
 from seatrial import InputError, SimulationError
 from tests.command import seatrial as command
+from tests.kit import needs_kits
+
+NEEDS = needs_kits("campaigns")
 
 
 @pytest.mark.slow
@@ -175,8 +178,14 @@ def test_an_interrupted_run_raises_and_is_whole(
         (lambda t: seatrial.run_trial(t, set={"lag.uu": 1}), "unknown port 'uu'"),
         (lambda t: seatrial.run_trial(t, set={"stp": 1}), "did you mean 'stop' or 'step'"),
         (lambda t: seatrial.run_trial(t, set={"stop": True}), "stop: "),
-        (lambda t: seatrial.run_campaign("hydrone-pad"), "did you mean 'hydrone-pads'"),
-        (lambda t: seatrial.load_campaign_result(t), "is not a campaign folder"),
+        pytest.param(
+            lambda t: seatrial.run_campaign("hydrone-pad"),
+            "did you mean 'hydrone-pads'",
+            marks=NEEDS,
+        ),
+        pytest.param(
+            lambda t: seatrial.load_campaign_result(t), "is not a campaign folder", marks=NEEDS
+        ),
     ],
 )
 def test_mistakes_are_named_and_leave_nothing(
@@ -211,6 +220,7 @@ def campaign(trial: str, tmp_path: Path) -> str:
     return str(path)
 
 
+@needs_kits("campaigns")
 @pytest.mark.interop
 def test_a_campaign_is_that_of_the_command(campaign: str, tmp_path: Path) -> None:
     command("run", campaign, "--engine", "direct", "--out", "a", cwd=tmp_path)
@@ -235,6 +245,7 @@ def test_a_campaign_is_that_of_the_command(campaign: str, tmp_path: Path) -> Non
     assert (result.cases[1].folder / "report.html").is_file()
 
 
+@needs_kits("campaigns")
 @pytest.mark.interop
 def test_a_campaign_is_a_table(campaign: str, tmp_path: Path) -> None:
     seatrial.run_campaign(campaign, out=tmp_path / "run")

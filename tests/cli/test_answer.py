@@ -11,6 +11,8 @@ from xml.etree import ElementTree
 
 import pytest
 
+from tests.kit import needs_kits
+
 from ..command import SEATRIAL, seatrial
 
 RIG = """
@@ -63,6 +65,7 @@ def test_a_run_answers_with_its_verdicts(folder: Path) -> None:
     assert any(line.startswith("PASS  it turns") for line in found["lines"])
 
 
+@needs_kits("campaigns")
 def test_a_campaign_answers_with_its_cases(folder: Path) -> None:
     found = answer("run", "campaign.toml", "--engine", "direct", "--out", "c", cwd=folder)
     runs = found["result"]["runs"]
@@ -113,6 +116,7 @@ def test_every_command_of_the_page_answers(folder: Path) -> None:
     )
 
 
+@needs_kits("campaigns")
 def test_a_junit_file_has_a_case_for_each_criterion(folder: Path) -> None:
     arguments = ("run", "campaign.toml", "--engine", "direct", "--out", "c", "--junit", "j.xml")
     assert seatrial(*arguments, "--no-report", cwd=folder).returncode == 1

@@ -15,6 +15,7 @@ import pytest
 from seatrial.cli.commands import commands, examples, loaded
 from seatrial.errors import unknown
 from tests.command import SEATRIAL, seatrial
+from tests.kit import needs_kits
 
 BAD = '''
 """Fails."""
@@ -194,6 +195,7 @@ def test_the_command_line_sets_the_pace(boat: Path) -> None:
     assert (pacing["factor"], pacing["overrun"]) == (2.0, "slip")
 
 
+@needs_kits("campaigns")
 def test_a_campaign_runs_and_reports(boat: Path, write) -> None:
     criteria = '[[criteria]]\nname = "dry"\ncheck = "boat.y > 1 m"\n'
     write("short.toml", f'rig = "rig.toml"\nstop = "50 ms"\n{criteria}')

@@ -14,6 +14,7 @@ from pathlib import Path
 import pytest
 
 from tests.command import SEATRIAL, seatrial
+from tests.kit import needs_kits
 
 COMPONENT = '''
 """Takes its time."""
@@ -143,6 +144,7 @@ def test_a_signal_ends_a_wait(start, tmp_path: Path) -> None:
     assert_whole(tmp_path / "run", 1)
 
 
+@needs_kits("campaigns")
 @pytest.mark.slow
 def test_a_signal_ends_a_campaign_in_its_case(start, tmp_path: Path) -> None:
     process = start("run", "campaign.toml", "--out", "all", "--engine", "direct", "--jobs", "1")
@@ -154,6 +156,7 @@ def test_a_signal_ends_a_campaign_in_its_case(start, tmp_path: Path) -> None:
     assert (tmp_path / "all" / "report.html").is_file()
 
 
+@needs_kits("campaigns")
 @pytest.mark.slow
 @pytest.mark.parametrize(
     "name", ["campaign.toml", pytest.param("trial.toml", marks=pytest.mark.interop)]

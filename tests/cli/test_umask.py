@@ -10,7 +10,6 @@ from pathlib import Path
 
 import pytest
 
-from seatrial.trial.campaigns.shipment import pack_folder, unpack_folder
 from tests.kit import needs_kits
 
 SEATRIAL = str(Path(sys.executable).with_name("seatrial"))
@@ -27,7 +26,7 @@ COMMANDS = (
 
 
 @pytest.mark.slow
-@needs_kits("logs")
+@needs_kits("campaigns", "logs")
 @pytest.mark.parametrize("umask", [0o027, 0o002])
 def test_the_umask_decides(tmp_path: Path, umask: int) -> None:
     tmp_path.chmod(0o777)
@@ -55,7 +54,10 @@ def test_the_umask_decides(tmp_path: Path, umask: int) -> None:
         assert mode == most & ~umask, f"{path.relative_to(tmp_path)}: {mode:o}"
 
 
+@needs_kits("campaigns")
 def test_a_folder_that_another_machine_has_packed(tmp_path: Path) -> None:
+    from seatrial_kits.campaigns.shipment import pack_folder, unpack_folder
+
     (tmp_path / "case").mkdir()
     (tmp_path / "case" / "signals.csv").write_text("t\n")
     (tmp_path / "case" / "signals.csv").chmod(0o600)

@@ -9,7 +9,6 @@ from seatrial.fmi.components.index import component_class, components
 from seatrial.model.component import Component, Output
 from seatrial.physics.craft.manoeuvring_ship import ManoeuvringShip
 from seatrial.physics.craft.marine_craft import MarineCraft
-from seatrial.physics.craft.multirotor import Multirotor
 from seatrial.physics.craft.sailboat import Sailboat
 from seatrial.physics.craft.surface_vessel import SurfaceVessel
 from seatrial.physics.craft.thruster_ship import ThrusterShip
@@ -143,5 +142,4 @@ def test_every_craft_has_an_attachment():
     craft = [cls for cls in classes if cls.__module__.startswith("seatrial.physics.craft.")]
     craft = [cls for cls in craft if "motion" in cls.terminals and gives_motion(cls)]
     assert len(craft) >= 6
-    # What flies is moored and towed by nothing.
-    assert all("attachment" in cls.terminals for cls in craft if cls is not Multirotor)
+    assert all("attachment" in cls.terminals for cls in craft)

@@ -13,8 +13,8 @@ from seatrial.api.campaigns import CampaignResult
 from seatrial.api.results import load_result
 from seatrial.errors import InputError
 from seatrial.trial.records.compare import compare
-from seatrial.trial.reports.campaign_report import write_campaign_report
 from seatrial.trial.reports.report import write_report
+from seatrial_kits.campaigns.results.campaign_report import write_campaign_report
 
 from ..trials.conftest import write_run_folder
 from .documents import changed

@@ -10,8 +10,8 @@ from seatrial.errors import InputError
 from seatrial.system.flattening import load_rig
 from seatrial.system.parameters import load_vehicle
 from seatrial.system.profile.profile import load_profile
-from seatrial.trial.campaigns.campaign import load_campaign
 from seatrial.trial.files.trial import load_trial
+from seatrial_kits.campaigns.campaign import load_campaign
 from seatrial_kits.identify.studies.planar_experiment import read_experiment
 
 READERS = (load_trial, load_rig, load_profile, load_vehicle, load_campaign, read_experiment)

@@ -9,6 +9,8 @@ from pathlib import Path
 
 import pytest
 
+from tests.kit import needs_kits
+
 SCRIPT = Path(__file__).parents[2] / ".github/actions/sea-trials/summary.py"
 FILES = {
     "heel.py": '''import math
@@ -70,6 +72,7 @@ def summary(folder, **environment):
     return done, target.read_text("utf-8") if target.is_file() else ""
 
 
+@needs_kits("campaigns")
 @pytest.mark.long
 def test_a_change_that_breaks_a_campaign_is_in_the_summary_and_at_its_line(clone):
     rig = clone / "rig.toml"

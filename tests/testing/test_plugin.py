@@ -7,6 +7,8 @@ from pathlib import Path
 
 import pytest
 
+from tests.kit import needs_kits
+
 from .running import cases, pytest_in
 
 RIG = """
@@ -122,6 +124,7 @@ def test_a_mistake_in_the_mark_is_explained(project: Path) -> None:
     assert "did you mean 'command'" in (project / "output.txt").read_text()
 
 
+@needs_kits("campaigns")
 @pytest.mark.slow
 @pytest.mark.parametrize("engine", ["direct", "fmu"])
 def test_trials_in_toml_are_tests(tmp_path: Path, engine: str) -> None:

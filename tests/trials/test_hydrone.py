@@ -14,11 +14,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from seatrial.trial.campaigns.campaign import load_campaign
-from seatrial.trial.campaigns.in_folders import run_campaign
 from seatrial.trial.files.trial import load_trial
 from seatrial.trial.records.run_folder import load_run
 from seatrial.trial.running.run import run_trial
+from seatrial_kits.campaigns.campaign import load_campaign
+from seatrial_kits.campaigns.in_folders import run_campaign
 
 pytestmark = pytest.mark.interop
 

@@ -13,11 +13,11 @@ import plotly
 import pytest
 
 from seatrial.errors import InputError
-from seatrial.trial.reports.campaign_report import write_campaign_report, write_case_report
 from seatrial.trial.reports.plotly_js import plotly_js
 from seatrial.trial.reports.plots import MAX_POINTS, Line, Panel, decimate, time_figure
 from seatrial.trial.reports.report import points_of_a_line, write_report
 from seatrial.trial.reports.templates import packed
+from seatrial_kits.campaigns.results.campaign_report import write_campaign_report, write_case_report
 from seatrial_kits.live.stage import viewer_js
 
 from .conftest import PADS, unpacked, write_run_folder

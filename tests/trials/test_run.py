@@ -9,14 +9,14 @@ from pathlib import Path
 
 import pytest
 
+import seatrial
 from seatrial.errors import InputError
-from seatrial.trial.campaigns.campaign import load_campaign
-from seatrial.trial.campaigns.in_folders import run_campaign
 from seatrial.trial.files.trial import load_trial
 from seatrial.trial.records.run_folder import load_run
 from seatrial.trial.reports.report import write_report
 from seatrial.trial.running.output import claim_folder
 from seatrial.trial.running.run import Hooks, StoppedError, run_trial
+from tests.kit import needs_kits
 
 from .test_sailing import figure_below
 
@@ -328,6 +328,7 @@ def test_default_folders_never_meet(tmp_path: Path, monkeypatch) -> None:
     assert len(set(folders)) == 3
 
 
+@needs_kits("campaigns")
 def test_a_bad_case_of_a_campaign_is_found_before_the_first_runs(
     bench, write, tmp_path: Path
 ) -> None:
@@ -336,7 +337,7 @@ def test_a_bad_case_of_a_campaign_is_found_before_the_first_runs(
         "campaign.toml", 'trials = ["trial.toml"]\n[grid]\n"boat.push" = ["0 N", "5 N", "1 kg"]\n'
     )
     with pytest.raises(InputError, match="'kg' cannot be converted"):
-        run_campaign(load_campaign(str(path)), tmp_path / "out", engine="direct")
+        seatrial.run_campaign(path, out=tmp_path / "out")
     assert not (tmp_path / "out").exists()
 
 
@@ -367,6 +368,7 @@ def test_a_folder_with_something_in_it_is_never_written_to(bench, tmp_path: Path
     assert [p.name for p in (tmp_path / "run").iterdir()] == ["precious"]
 
 
+@needs_kits("campaigns")
 @pytest.mark.slow
 def test_a_design_is_drawn_for_every_combination(bench, write, tmp_path: Path) -> None:
     bench()
@@ -376,7 +378,7 @@ def test_a_design_is_drawn_for_every_combination(bench, write, tmp_path: Path) -
         '[design]\nkind = "latin-hypercube"\ncount = 3\n'
         '[design.vary]\n"boat.push" = { uniform = ["0 N", "3 N"] }\n',
     )
-    run_campaign(load_campaign(str(path)), tmp_path / "out", engine="direct")
+    seatrial.run_campaign(path, out=tmp_path / "out")
     index = json.loads((tmp_path / "out" / "campaign.json").read_text())
     settings = [case["set"] for case in index["cases"]]
     assert [each["boat.mode"] for each in settings] == ["calm"] * 3 + ["storm"] * 3
@@ -385,6 +387,7 @@ def test_a_design_is_drawn_for_every_combination(bench, write, tmp_path: Path) -
     assert sorted(map(int, pushes[:3])) == [0, 1, 2]
 
 
+@needs_kits("campaigns")
 def test_a_key_is_drawn_or_in_the_grid(bench, write, tmp_path: Path) -> None:
     bench()
     path = write(
@@ -396,9 +399,10 @@ def test_a_key_is_drawn_or_in_the_grid(bench, write, tmp_path: Path) -> None:
     with pytest.raises(
         InputError, match=r"campaign.toml: design: vary: boat.push is a key of grid"
     ):
-        run_campaign(load_campaign(str(path)), tmp_path / "out", engine="direct")
+        seatrial.run_campaign(path, out=tmp_path / "out")
 
 
+@needs_kits("campaigns")
 @pytest.mark.slow
 def test_a_campaign_runs_every_combination_and_each_scaling(bench, write, tmp_path: Path) -> None:
     bench()
@@ -407,8 +411,7 @@ def test_a_campaign_runs_every_combination_and_each_scaling(bench, write, tmp_pa
         'trials = ["trial.toml"]\n[grid]\n"boat.mode" = ["calm", "storm"]\n'
         '"boat.push" = ["0 N", "5 N"]\n[scale]\n"boat.trim" = [0.5, 2.0]\n',
     )
-    _, finished = run_campaign(load_campaign(str(path)), tmp_path / "out", engine="direct")
-    assert len(finished) == 12
+    assert len(seatrial.run_campaign(path, out=tmp_path / "out").cases) == 12
     index = json.loads((tmp_path / "out" / "campaign.json").read_text())
     assert [case["passed"] for case in index["cases"]] == [
         True,

@@ -9,14 +9,14 @@ from typing import Any
 import numpy as np
 import pytest
 
-from seatrial.trial.campaigns.campaign import load_campaign
-from seatrial.trial.campaigns.in_folders import run_campaign
 from seatrial.trial.files.trial import load_trial
 from seatrial.trial.records.run_folder import load_run
-from seatrial.trial.reports.campaign_report import write_campaign_report
 from seatrial.trial.reports.report import write_report
 from seatrial.trial.reports.sailing import PolarPoint, polar_figure, polar_point
 from seatrial.trial.running.run import run_trial
+from seatrial_kits.campaigns.campaign import load_campaign
+from seatrial_kits.campaigns.in_folders import run_campaign
+from seatrial_kits.campaigns.results.campaign_report import write_campaign_report
 
 from .conftest import figures_of
 

@@ -9,12 +9,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from seatrial.trial.campaigns.campaign import load_campaign
-from seatrial.trial.campaigns.in_folders import run_campaign
 from seatrial.trial.files.trial import load_trial
 from seatrial.trial.records.run_folder import load_run
 from seatrial.trial.reports.report import write_report
 from seatrial.trial.running.run import run_trial
+from seatrial_kits.campaigns.campaign import load_campaign
+from seatrial_kits.campaigns.in_folders import run_campaign
 
 from .conftest import figures_of
 from .test_shipped_trials import TRIALS

@@ -279,6 +279,7 @@ def test_the_caller_of_the_api_lives(trial, tmp_path: Path) -> None:
     assert len(api.load_result(tmp_path / "run").signals["boat.steps"]) == 4
 
 
+@needs_kits("campaigns")
 @pytest.mark.slow
 @pytest.mark.parametrize("where", ["step", "start"])
 def test_a_case_that_dies_does_not_end_its_campaign(where: str, trial, write, tmp_path) -> None:
@@ -296,6 +297,7 @@ def test_a_case_that_dies_does_not_end_its_campaign(where: str, trial, write, tm
     assert "3 of 4 cases pass" in done.stdout
 
 
+@needs_kits("campaigns")
 @pytest.mark.slow
 def test_a_failed_run_stays_one_if_its_report_cannot_be_made(trial, write, tmp_path: Path) -> None:
     trial("spoil")

@@ -10,12 +10,12 @@ import typer
 from rich.markup import escape
 
 from ..errors import InputError
+from ..plugins import service
 from ..trial.records.compare import compare as compare_runs
-from ..trial.records.run_folder import MANIFEST
-from ..trial.reports.campaign_report import CAMPAIGN
+from ..trial.records.run_folder import CAMPAIGN, MANIFEST
 from .answer import answer
 from .options import LogColumns, LogFormat
-from .show import console, print_notes, print_shown, print_table
+from .show import console, print_notes, print_table
 from .statuses import FAILED
 
 
@@ -52,7 +52,7 @@ def compare(
         _compare_with_log(run_a, run_b, match or [], columns or [], format_name)
         return
     if all(campaigns):
-        _compare_campaigns(run_a, run_b, page)
+        service("campaigns.compare_named")(run_a, run_b, page)
         return
     if any(campaigns):
         one, other = (run_a, run_b) if campaigns[0] else (run_b, run_a)
@@ -94,21 +94,3 @@ def _compare_with_log(
     for line in resampling_notes(residuals):
         console.print(escape(line), soft_wrap=True)
     answer.result = {"notes": notes, "signals": [each.figures() for each in residuals]}
-
-
-def _compare_campaigns(folder_a: Path, folder_b: Path, page: Path | None) -> None:
-    from ..trial.campaigns.results.comparison import compare_campaigns
-
-    comparison = compare_campaigns(folder_a, folder_b)
-    answer.result = comparison.content()
-    for shown in comparison.tables():
-        print_shown(shown)
-    for line in comparison.lines:
-        console.print(escape(line), soft_wrap=True)
-    if page is not None:
-        from ..trial.campaigns.results.comparison_page import write_comparison_page
-
-        answer.result["page"] = str(write_comparison_page(comparison, page))
-        console.print(f"page: {page}", soft_wrap=True)
-    if comparison.is_worse:
-        raise typer.Exit(FAILED)

@@ -7,9 +7,8 @@ from typing import Annotated
 
 import typer
 
-from ..trial.campaigns.results.further_page import write_further_page
-from ..trial.campaigns.results.page import has_table, write_table_page
-from ..trial.reports.campaign_report import CAMPAIGN, write_campaign_report
+from ..plugins import service
+from ..trial.records.run_folder import CAMPAIGN
 from ..trial.reports.playing import play
 from ..trial.reports.report import write_report
 from .answer import answer
@@ -20,13 +19,13 @@ def report(
     folder: Annotated[Path, typer.Argument(metavar="RUN", help="Folder of a run or campaign.")],
 ) -> None:
     """Write the report of a run again."""
-    is_campaign = (folder / CAMPAIGN).is_file()
-    if has_table(folder):
-        page = write_table_page(folder)
+    further = None
+    if (folder / CAMPAIGN).is_file():
+        page, further = service("campaigns.written_again")(folder)
     else:
-        page = write_campaign_report(folder) if is_campaign else write_report(folder, play=play)
+        page = write_report(folder, play=play)
     answer.result = {"report": str(page)}
     console.print(f"report: {page}", soft_wrap=True)
-    if is_campaign and (further := write_further_page(folder)) is not None:
-        answer.result["page"] = str(further.path)
-        console.print(f"page: {further.path}", soft_wrap=True)
+    if further is not None:
+        answer.result["page"] = str(further)
+        console.print(f"page: {further}", soft_wrap=True)

@@ -18,8 +18,6 @@ from ..trial.records.ending import is_whole
 from .answer import answer
 
 if TYPE_CHECKING:
-    from ..trial.campaigns.cases import Case
-    from ..trial.campaigns.results.finding import Shown
     from ..trial.criteria.verdict import Verdict
     from ..trial.running.run import Result
 
@@ -76,21 +74,6 @@ def text_table(headings: Sequence[str], rows: Iterable[Sequence[str]]) -> Table:
     return table
 
 
-def print_shown(shown: Shown) -> None:
-    """Print a table of a campaign's answer, or of a comparison."""
-    table = Table(title=escape(shown.title), title_justify="left", box=SIMPLE, padding=(0, 1, 0, 0))
-    for place, column in enumerate(shown.columns):
-        is_number = all(isinstance(row[place], (int, float)) for row in shown.rows)
-        table.add_column(escape(column), justify="right" if is_number else "left")
-    for row in shown.rows:
-        table.add_row(*(escape(_written(each)) for each in row))
-    print_table(table)
-
-
-def _written(value: object) -> str:
-    return f"{value:.4g}" if isinstance(value, float) else str(value)
-
-
 def print_more(count: int) -> None:
     """Print that a list has so many lines more."""
     console.print(
@@ -133,16 +116,6 @@ def _mark(verdict: Verdict) -> str:
     word = word or ("XPASS" if verdict.passed else "XFAIL")
     colour = "green" if verdict.as_expected else "red"
     return f"[{colour}]{word}[/{colour}]"
-
-
-def print_case(case: Case, result: Result) -> None:
-    """Print one line for a finished case of a campaign."""
-    failed = [name for name, _, verdict in result.verdicts if not verdict.as_expected]
-    mark = "[green]PASS[/green]" if result.passed else "[red]FAIL[/red]"
-    if not is_whole(result.status):
-        mark = f"[red]{result.status.upper()}[/red]"
-    why = f"  ({', '.join(failed)})" if failed else ""
-    console.print(f"{mark}  {escape(case.name)}{escape(why)}", soft_wrap=True)
 
 
 def run_entry(result: Result) -> dict[str, Any]:

@@ -10,6 +10,7 @@ import pytest
 
 from ..api.written import as_engine
 from ..errors import InputError, SeatrialError
+from ..plugins import service
 from ..system.files import read_toml
 from .trial_run import TrialRun, limited, run_folder
 
@@ -31,12 +32,11 @@ class TrialFile(pytest.File):
 
     def collect(self) -> Iterator[TrialItem]:
         """Yield a test for each run. Raises InputError for what is wrong in the file."""
-        from ..trial.campaigns.campaign import load_campaign
         from ..trial.files.trial import load_trial
 
         try:
             if "trials" in read_toml(self.path)[0]:
-                cases = load_campaign(str(self.path)).cases()
+                cases = service("campaigns.load_campaign")(str(self.path)).cases()
                 found = [(case.name, case.trial) for case in cases]
             else:
                 loaded = load_trial(str(self.path))

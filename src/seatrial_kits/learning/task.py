@@ -14,12 +14,12 @@ from seatrial.errors import InputError, unknown
 from seatrial.model.units import Unit, conversion, quantity, split_quantity, unit
 from seatrial.system.files import find_file, read_toml, validated
 from seatrial.system.rig import duration_ns
-from seatrial.trial.campaigns.distributions import Law, read_distribution
 from seatrial.trial.criteria import expressions as ex
 from seatrial.trial.criteria import formulas
 from seatrial.trial.criteria.grammar import tree
 from seatrial.trial.criteria.metrics import is_of_record
 from seatrial.trial.criteria.predicates import Comparison
+from seatrial_kits.campaigns.distributions import Law, read_distribution
 
 from .task_file import ActEntry, EndEntry, ObserveEntry, RewardEntry, TaskFile
 

@@ -8,7 +8,7 @@ from pydantic import Field, model_validator
 from pydantic_core import PydanticCustomError
 
 from seatrial.system.files import FileModel
-from seatrial.trial.campaigns.distributions import Distribution
+from seatrial_kits.campaigns.distributions import Distribution
 
 Written = str | float | int
 

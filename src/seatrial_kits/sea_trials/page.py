@@ -13,10 +13,8 @@ from typing import Any
 from seatrial.errors import InputError
 from seatrial.files.whole_file import write_whole
 from seatrial.model.readable import number
-from seatrial.trial.campaigns.results.further_page import Written
-from seatrial.trial.records.run_folder import MANIFEST, Run, load_run
-from seatrial.trial.records.run_schema import CAMPAIGN, checked_json
-from seatrial.trial.reports.campaign_report import CAMPAIGN as INDEX
+from seatrial.trial.records import run_schema
+from seatrial.trial.records.run_folder import CAMPAIGN, MANIFEST, Run, load_run
 from seatrial.trial.reports.report import render
 
 from .curves import drawn_together, spiral_figure
@@ -76,12 +74,15 @@ def evaluated(folder: Path, criteria: str | None = None) -> Evaluated:
     return Evaluated(run, done, found, "", verdicts_of(done, found))
 
 
-def campaign_page(folder: Path) -> Written:
-    """Write the page of a campaign's folder: see `write_pages`. Raises InputError."""
-    left_out = checked_json(folder / INDEX, CAMPAIGN).get("left_out", {})
+def campaign_page(folder: Path) -> tuple[Path, list[str]]:
+    """Write the page of a campaign's folder, and return its path and what does not hold by it.
+
+    See `write_pages`. Raises InputError.
+    """
+    left_out = run_schema.checked_json(folder / CAMPAIGN, run_schema.CAMPAIGN).get("left_out", {})
     trials = [evaluated(each) for each in run_folders([folder])]
     path = write_pages(trials, folder, left_out)
-    return Written(path, [what for trial in trials for what in failed(trial)])
+    return path, [what for trial in trials for what in failed(trial)]
 
 
 def failed(trial: Evaluated) -> list[str]:

@@ -12,14 +12,17 @@ import numpy as np
 
 from seatrial.errors import InputError, unknown
 from seatrial.system.files import FileModel
-from seatrial.trial.campaigns.asked import Asked, asked_of
-from seatrial.trial.campaigns.campaign import INDEX, Campaign
-from seatrial.trial.campaigns.columns import table_columns
-from seatrial.trial.campaigns.ended import Ended
-from seatrial.trial.campaigns.ended_log import EndedLog, ended_cases
-from seatrial.trial.campaigns.evaluator import Plan
-from seatrial.trial.campaigns.identity import identity_of
-from seatrial.trial.campaigns.questions import (
+from seatrial.trial.running.hooks import Hooks
+from seatrial.trial.running.measuring import Measured
+from seatrial.trial.running.output import claim_folder, write_json
+from seatrial_kits.campaigns.asked import Asked, asked_of
+from seatrial_kits.campaigns.campaign import INDEX, Campaign
+from seatrial_kits.campaigns.columns import table_columns
+from seatrial_kits.campaigns.ended import Ended
+from seatrial_kits.campaigns.ended_log import EndedLog, ended_cases
+from seatrial_kits.campaigns.evaluator import Plan
+from seatrial_kits.campaigns.identity import identity_of
+from seatrial_kits.campaigns.questions import (
     LimitsQuestion,
     Questions,
     RareQuestion,
@@ -27,14 +30,11 @@ from seatrial.trial.campaigns.questions import (
     TuneQuestion,
     WorstCaseQuestion,
 )
-from seatrial.trial.campaigns.results.finding import ANSWER, Finding, read_answer
-from seatrial.trial.campaigns.sampled_checks import check
-from seatrial.trial.campaigns.sweep import Done, How, Sweep, changes_of, index_of, workers_of
-from seatrial.trial.campaigns.table import Tables, arrow
-from seatrial.trial.running.hooks import Hooks
-from seatrial.trial.running.measuring import Measured
-from seatrial.trial.running.output import claim_folder, write_json
-from seatrial.trial.running.resuming import cut_aside
+from seatrial_kits.campaigns.results.finding import ANSWER, Finding, read_answer
+from seatrial_kits.campaigns.resuming import cut_aside
+from seatrial_kits.campaigns.sampled_checks import check
+from seatrial_kits.campaigns.sweep import Done, How, Sweep, changes_of, index_of, workers_of
+from seatrial_kits.campaigns.table import Tables, arrow
 
 from .asking import Asking, stopped
 from .limits_answer import limits_question

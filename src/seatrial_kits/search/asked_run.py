@@ -9,16 +9,16 @@ from typing import Any
 import numpy as np
 
 from seatrial.errors import InputError
-from seatrial.trial.campaigns.asked import asked_of
-from seatrial.trial.campaigns.campaign import INDEX, Campaign
-from seatrial.trial.campaigns.cases import Case
-from seatrial.trial.campaigns.distributions import Law, number_and_unit
-from seatrial.trial.campaigns.identity import identity_of, refuse_changed
-from seatrial.trial.campaigns.questions import Questions
-from seatrial.trial.campaigns.results.finding import read_answer
-from seatrial.trial.campaigns.sweep import index_of, refuse_other
-from seatrial.trial.campaigns.table import RESULTS, read_rows
 from seatrial.trial.records.run_schema import CAMPAIGN, checked_json
+from seatrial_kits.campaigns.asked import asked_of
+from seatrial_kits.campaigns.campaign import INDEX, Campaign
+from seatrial_kits.campaigns.cases import Case
+from seatrial_kits.campaigns.distributions import Law, number_and_unit
+from seatrial_kits.campaigns.identity import identity_of, refuse_changed
+from seatrial_kits.campaigns.questions import Questions
+from seatrial_kits.campaigns.results.finding import read_answer
+from seatrial_kits.campaigns.sweep import index_of, refuse_other
+from seatrial_kits.campaigns.table import RESULTS, read_rows
 
 from .space import space_of
 

@@ -11,11 +11,11 @@ import numpy as np
 
 from seatrial.errors import InputError, SimulationError, unknown
 from seatrial.system.system import Engine
-from seatrial.trial.campaigns.asked import Asked
-from seatrial.trial.campaigns.campaign import Campaign
-from seatrial.trial.campaigns.results.finding import Finding
 from seatrial.trial.running.hooks import Hooks
 from seatrial.trial.running.measuring import Measured
+from seatrial_kits.campaigns.asked import Asked
+from seatrial_kits.campaigns.campaign import Campaign
+from seatrial_kits.campaigns.results.finding import Finding
 
 from .space import Space
 

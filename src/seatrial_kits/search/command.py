@@ -14,13 +14,13 @@ from seatrial.cli.show import console, print_verdicts, run_entry
 from seatrial.cli.statuses import FAILED
 from seatrial.cli.stopping import stoppable
 from seatrial.errors import InputError, SimulationError
-from seatrial.trial.campaigns.campaign import INDEX, Campaign, load_campaign
-from seatrial.trial.campaigns.cases import Case
-from seatrial.trial.campaigns.identity import identity_of, refuse_changed
 from seatrial.trial.reports.playing import play
 from seatrial.trial.reports.report import write_report
 from seatrial.trial.running.hooks import Hooks
 from seatrial.trial.running.supervision import run_supervised
+from seatrial_kits.campaigns.campaign import INDEX, Campaign, load_campaign
+from seatrial_kits.campaigns.cases import Case
+from seatrial_kits.campaigns.identity import identity_of, refuse_changed
 
 from .asked_run import asked_run
 from .command_ask import ask

@@ -11,18 +11,19 @@ from rich.markup import escape
 from seatrial.cli.answer import answer
 from seatrial.cli.options import EngineName, Network, Out, engine_named
 from seatrial.cli.running.run_options import Cluster, Jobs, KeepName, NoReport, RerunChanged, Resume
-from seatrial.cli.show import console, print_notes, print_shown
+from seatrial.cli.show import console, print_notes
 from seatrial.cli.stopping import stoppable
 from seatrial.cli.watch import Watch
 from seatrial.errors import InputError
 from seatrial.links.hardware import allow_network
-from seatrial.trial.campaigns.campaign import load_campaign
-from seatrial.trial.campaigns.cases import Case
-from seatrial.trial.campaigns.ended import Ended
-from seatrial.trial.campaigns.results.finding import Finding
-from seatrial.trial.campaigns.results.page import write_table_page
-from seatrial.trial.campaigns.sweep import How, keep_named
 from seatrial.trial.running.hooks import Hooks
+from seatrial_kits.campaigns.campaign import load_campaign
+from seatrial_kits.campaigns.cases import Case
+from seatrial_kits.campaigns.commands.shown import print_shown
+from seatrial_kits.campaigns.ended import Ended
+from seatrial_kits.campaigns.results.finding import Finding
+from seatrial_kits.campaigns.results.page import write_table_page
+from seatrial_kits.campaigns.sweep import How, keep_named
 
 from .ask import ask as ask_campaign
 

@@ -7,8 +7,8 @@ from collections.abc import Callable, Iterator
 import numpy as np
 
 from seatrial.errors import InputError
-from seatrial.trial.campaigns.questions import LimitsQuestion
-from seatrial.trial.campaigns.results.finding import Finding, Shown
+from seatrial_kits.campaigns.questions import LimitsQuestion
+from seatrial_kits.campaigns.results.finding import Finding, Shown
 
 from .asking import Asking
 from .drawing import Axes, drawn

@@ -10,12 +10,12 @@ import numpy as np
 
 from seatrial.errors import InputError, unknown
 from seatrial.model.units import conversion
-from seatrial.trial.campaigns.distributions import number_and_unit
 from seatrial.trial.files.trial import Trial
 from seatrial.trial.records import run_schema
 from seatrial.trial.records.run_folder import MANIFEST
 from seatrial.trial.records.run_schema import checked_json
 from seatrial.trial.running.supervision import run_supervised
+from seatrial_kits.campaigns.distributions import number_and_unit
 
 from .asking import Asking
 from .space import Space

@@ -11,8 +11,8 @@ import numpy as np
 
 from seatrial.errors import InputError, unknown
 from seatrial.model.units import quantity
-from seatrial.trial.campaigns.questions import Objective
 from seatrial.trial.running.measuring import Measured
+from seatrial_kits.campaigns.questions import Objective
 
 from .asking import Asking, robustness_of
 from .outputs import Output, outputs_of

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from seatrial.trial.campaigns.table import arrow
+from seatrial_kits.campaigns.table import arrow
 
 
 def write_columns(path: Path, columns: Mapping[str, Any], units: Mapping[str, str]) -> None:

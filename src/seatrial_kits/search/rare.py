@@ -9,8 +9,8 @@ from functools import partial
 import numpy as np
 
 from seatrial.errors import InputError
-from seatrial.trial.campaigns.questions import RareQuestion
-from seatrial.trial.campaigns.results.finding import Finding, Shown
+from seatrial_kits.campaigns.questions import RareQuestion
+from seatrial_kits.campaigns.results.finding import Finding, Shown
 
 from .asking import Asking, Values
 from .drawing import drawn

@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 
 from seatrial.errors import InputError, SimulationError, unknown
-from seatrial.trial.campaigns.questions import SensitivityQuestion
-from seatrial.trial.campaigns.results.finding import Finding, Shown
+from seatrial_kits.campaigns.questions import SensitivityQuestion
+from seatrial_kits.campaigns.results.finding import Finding, Shown
 
 from .asking import Asking, robustness_of
 from .drawing import Axes, drawn

@@ -9,10 +9,10 @@ from typing import Any
 import numpy as np
 
 from seatrial.errors import InputError, unknown
-from seatrial.trial.campaigns.campaign import Campaign
-from seatrial.trial.campaigns.designs import joint_quantiles, laws_of, lower_factor
-from seatrial.trial.campaigns.distributions import Distribution, Law, read_distribution
-from seatrial.trial.campaigns.scatter import Scatter
+from seatrial_kits.campaigns.campaign import Campaign
+from seatrial_kits.campaigns.designs import joint_quantiles, laws_of, lower_factor
+from seatrial_kits.campaigns.distributions import Distribution, Law, read_distribution
+from seatrial_kits.campaigns.scatter import Scatter
 
 _TAILS = np.array([0.00135, 0.99865])
 """Probabilities at which a distribution without an end is cut: three standard deviations."""

@@ -7,9 +7,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from seatrial.trial.campaigns.questions import TuneQuestion
-from seatrial.trial.campaigns.results.finding import Finding, Shown
 from seatrial.trial.running.measuring import Measured
+from seatrial_kits.campaigns.questions import TuneQuestion
+from seatrial_kits.campaigns.results.finding import Finding, Shown
 
 from .asking import Asking
 from .drawing import drawn

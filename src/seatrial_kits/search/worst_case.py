@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from seatrial.trial.campaigns.questions import WorstCaseQuestion
-from seatrial.trial.campaigns.results.finding import Finding, Shown
+from seatrial_kits.campaigns.questions import WorstCaseQuestion
+from seatrial_kits.campaigns.results.finding import Finding, Shown
 
 from .asking import Asking
 from .drawing import drawn

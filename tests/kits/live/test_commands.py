@@ -15,10 +15,10 @@ import zstandard
 
 from seatrial.trial.files.trial import load_trial
 from seatrial.trial.records.run_folder import load_run
-from seatrial.trial.reports.campaign_report import VIEWER, write_case_report
 from seatrial.trial.reports.report import write_report
 from seatrial.trial.running.hooks import Hooks
 from seatrial.trial.running.supervision import run_supervised
+from seatrial_kits.campaigns.results.campaign_report import VIEWER, write_case_report
 from seatrial_kits.live.command import trial_of
 from seatrial_kits.live.session import Session
 from seatrial_kits.live.stage import played, viewer_js

@@ -5,8 +5,8 @@ import re
 import pytest
 
 from seatrial.errors import InputError
-from seatrial.trial.campaigns.campaign import load_campaign
 from seatrial.trial.files.trial import load_trial
+from seatrial_kits.campaigns.campaign import load_campaign
 from seatrial_kits.sea_trials.abilities import reason_against
 
 

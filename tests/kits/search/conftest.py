@@ -2,7 +2,7 @@
 
 import pytest
 
-from seatrial.trial.campaigns.campaign import load_campaign
+from seatrial_kits.campaigns.campaign import load_campaign
 
 FORM = '''
 import math

@@ -9,8 +9,8 @@ import pandas as pd
 import pytest
 
 from seatrial.errors import InputError
-from seatrial.trial.campaigns.results.page import write_table_page
-from seatrial.trial.campaigns.sweep import How
+from seatrial_kits.campaigns.results.page import write_table_page
+from seatrial_kits.campaigns.sweep import How
 from seatrial_kits.search.ask import ask
 from seatrial_kits.search.asked_run import asked_run
 from tests.cli.test_stop import SEATRIAL

@@ -4,9 +4,9 @@ import os
 
 import pytest
 
-from seatrial.trial.campaigns.sweep import How
+from seatrial_kits.campaigns.sweep import How
 from seatrial_kits.search.ask import ask
-from tests.campaigns.test_cluster import dask_of
+from tests.kits.campaigns.test_cluster import dask_of
 
 pytestmark = [
     pytest.mark.interop,

@@ -10,9 +10,9 @@ import pytest
 from scipy.interpolate import RegularGridInterpolator
 
 from seatrial.errors import InputError, SimulationError
-from seatrial.trial.campaigns.results.page import write_table_page
-from seatrial.trial.campaigns.sweep import How
 from seatrial.trial.running.hooks import Hooks
+from seatrial_kits.campaigns.results.page import write_table_page
+from seatrial_kits.campaigns.sweep import How
 from seatrial_kits.search.ask import ask
 from seatrial_kits.search.limits import SURE, find_boundary
 

@@ -8,7 +8,7 @@ import pytest
 from scipy.stats import chi2, norm
 
 from seatrial.errors import InputError, SimulationError
-from seatrial.trial.campaigns.sweep import How
+from seatrial_kits.campaigns.sweep import How
 from seatrial_kits.search.ask import ask
 from seatrial_kits.search.subset import subset_simulation
 

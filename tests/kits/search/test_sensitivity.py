@@ -7,7 +7,7 @@ import pandas as pd
 import pytest
 
 from seatrial.errors import InputError
-from seatrial.trial.campaigns.sweep import How
+from seatrial_kits.campaigns.sweep import How
 from seatrial_kits.search.ask import ask
 from seatrial_kits.search.indices import morris, sobol
 

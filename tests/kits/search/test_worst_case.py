@@ -8,9 +8,9 @@ import pandas as pd
 import pytest
 
 from seatrial.errors import InputError
-from seatrial.trial.campaigns.sweep import How
 from seatrial.trial.files.trial import load_trial
 from seatrial.trial.running.run import run_trial
+from seatrial_kits.campaigns.sweep import How
 from seatrial_kits.search.ask import ask
 from seatrial_kits.search.searches import search
 from seatrial_kits.search.shrinking import Shrinking

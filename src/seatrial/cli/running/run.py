@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import partial
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -17,14 +18,13 @@ from ...shipped import available
 from ...system.fault_entry import read_fault
 from ...system.packages import is_package
 from ...system.system import Engine
-from ...trial.campaigns.campaign import load_campaign
-from ...trial.campaigns.twice import First, check_repeatable, has_ended
 from ...trial.files.limit_entry import NONE, limits_of
 from ...trial.files.trial import Trial, load_trial
 from ...trial.reports.playing import play
 from ...trial.reports.report import write_report
 from ...trial.running.hooks import Hooks
 from ...trial.running.supervision import run_supervised
+from ...trial.running.twice import First, check_repeatable, has_ended
 from ..answer import answer
 from ..leaves import Leaves, exit_with
 from ..options import (
@@ -44,7 +44,6 @@ from ..options import (
 from ..show import print_notes, print_reachable, print_verdicts, run_entry
 from ..stopping import stoppable
 from ..watch import Watch
-from .campaign_run import How, run_cases
 from .run_options import (
     Cluster,
     Jobs,
@@ -128,10 +127,22 @@ def run(
             "--rerun-changed goes with --resume": rerun_changed and not resume,
         }
         _refuse_first(of_trials)
-        how = How(chosen, jobs, resume, rerun_changed, cluster, keep, keep_going, twice)
-        campaign = load_campaign(trial, changes, limits)
-        _refuse_endless([block.base for block in campaign.cases().blocks], hardware)
-        run_cases(campaign, out, how, leaves)
+        service("campaigns.run_named")(
+            trial,
+            changes,
+            limits,
+            out,
+            leaves,
+            engine=chosen,
+            jobs=jobs,
+            resume=resume,
+            rerun_changed=rerun_changed,
+            cluster=cluster,
+            keep=keep,
+            keep_going=keep_going,
+            twice=twice,
+            check=partial(_refuse_endless, hardware=hardware),
+        )
         return
     if jobs is not None or resume or rerun_changed or keep or cluster:
         raise InputError(_OF_CAMPAIGNS)

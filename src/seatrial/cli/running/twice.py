@@ -9,7 +9,7 @@ import typer
 from rich.markup import escape
 
 from ...system.system import Engine
-from ...trial.campaigns.twice import First, repeated
+from ...trial.running.twice import First, repeated
 from ..answer import answer
 from ..show import console
 from ..statuses import FAILED

@@ -21,6 +21,8 @@ SIGNALS = "signals.csv"
 MANIFEST = "manifest.json"
 VERDICTS = "verdicts.json"
 TIMING = "timing.json"
+CAMPAIGN = "campaign.json"
+"""Of a campaign's folder, which has the run folders of its cases."""
 
 _CHUNK_ROWS = 10_000
 

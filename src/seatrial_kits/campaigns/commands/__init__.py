@@ -1,0 +1,1 @@
+"""Commands of campaigns: `seatrial run`, `compare` and `report` of a campaign."""

@@ -1,0 +1,1 @@
+"""Multirotors that land on a moving deck by themselves: plant, sensors, control, decks."""
