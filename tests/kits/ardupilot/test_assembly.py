@@ -100,6 +100,36 @@ def test_a_program_is_started_in_the_run_folder_and_ended_with_it(program: Path)
 
 
 @pytest.mark.slow
+def test_two_firmwares_in_one_run_have_folders_ports_and_numbers_of_their_own(
+    program: Path,
+) -> None:
+    links = {
+        "keeper.firmware.sitl.ardupilot.link": "udpin:127.0.0.1:0",
+        "keeper.station.link": "tcpin:127.0.0.1:0",
+        "drone.ardupilot.link": "udpin:127.0.0.1:0",
+        "drone.station.link": "tcpin:127.0.0.1:0",
+        "stop": "0.1 s",
+    }
+    settings = [word for key, url in links.items() for word in ("--set", f"{key}={url}")]
+    done = seatrial(
+        "run", "hydrone-drone-ardupilot", "--autopilot", f"ardupilot={program}",
+        "--choose", f"copter={program}", "--out", "run", *settings, cwd=program.parent,
+    )  # fmt: skip
+    assert done.returncode == 1, done.stderr  # it has not landed yet
+    said = {}
+    for name, rate in (("keeper.firmware.sitl.ardupilot", 100), ("drone.ardupilot", 1000)):
+        folder = program.parent / "run" / name
+        answers = [json.loads(line) for line in (folder / "answers.jsonl").open()]
+        assert [a["timestamp"] for a in answers[:3]] == [0.0, 1.0 / rate, 2.0 / rate]
+        said[name] = (folder / "output.txt").read_text()
+        assert f"--rate {rate} " in said[name]
+    assert "--instance" not in said["keeper.firmware.sitl.ardupilot"]
+    assert "--instance 1 --sysid 2" in said["drone.ardupilot"]
+    assert "rng_1" in answers[0]
+    assert answers[0]["rng_1"] == pytest.approx(0.149, abs=0.05)  # feet of 0.25 m, sensor at 0.1 m
+
+
+@pytest.mark.slow
 def test_both_engines_and_each_run_give_the_same_bytes(program: Path) -> None:
     first, *others = (
         (flown("hydrone", program, f"run{number}", "--engine", engine) / "signals.csv").read_bytes()
