@@ -21,7 +21,7 @@ from .unsupported import advice, missing_headers, unsupported
 
 _LINES = 120
 """Of compilers' errors that a message has."""
-_MACHINE = ("machine", "uarts", "texts")
+_MACHINE = ("machine", "uarts", "basics", "texts")
 _BASE = ("-std=gnu++17", "-gdwarf-4", "-w", "-fpermissive", "-fno-pie", "-ffp-contract=off")
 _SKETCH = ("-O1", "-fsanitize-coverage=trace-pc")
 
