@@ -21,7 +21,7 @@ from .unsupported import advice, missing_headers, unsupported
 
 _LINES = 120
 """Of compilers' errors that a message has."""
-_MACHINE = ("machine", "uarts", "texts")
+_MACHINE = ("machine", "uarts", "basics", "texts")
 _BASE = ("-std=gnu++17", "-gdwarf-4", "-w", "-fpermissive", "-fno-pie", "-ffp-contract=off")
 _SKETCH = ("-O1", "-fsanitize-coverage=trace-pc")
 
@@ -53,7 +53,7 @@ FAMILIES = {
     # A computer's 32 bits are this board's: int, long, pointers and size_t; char has no sign.
     "esp32": Family(
         "esp32",
-        ("api", "devices", "network", "pulses", "queues", "storage", "tasks", "timers", "twai"),
+        ("api", "devices", "network", "pulses", "queues", "storage", "tasks", "tcp", "timers", "twai"),
         ("-m32", "-msse2", "-mfpmath=sse", "-funsigned-char", "-fasynchronous-unwind-tables"),
         ("-malign-double",),
         narrows=False,

@@ -1,4 +1,4 @@
-"""The WiFi of a board: UDP sockets on this machine, or where the network is allowed."""
+"""The WiFi of a board: sockets of UDP and TCP on this machine, or where the network is allowed."""
 
 from __future__ import annotations
 
@@ -11,11 +11,12 @@ from seatrial.errors import InputError, SimulationError
 from seatrial.links.hardware import check_host, check_listening
 
 from ..board import Inputs
+from .tcp import LISTEN, Tcp
 
 CHANNEL = 1
 _HEAD = struct.Struct("<BBHI")
 _ADDRESS, _OPEN, _CLOSE, _PACKET = 0, 1, 2, 3
-"""Kinds of messages: see ``esp32/network.cpp``."""
+"""Kinds of messages: see ``esp32/network.h``."""
 _LARGEST = 1460
 _A_STEP = 64
 """Packets that a socket takes in at most in a step."""
@@ -32,6 +33,7 @@ class Network:
     def __init__(self, name: str, address: str) -> None:
         self.name, self.address = name, address
         self._sockets: dict[int, socket.socket] = {}
+        self._tcp = Tcp(name, address)
         if address:
             check_listening("network: the board", address)
 
@@ -48,15 +50,18 @@ class Network:
                     data, (host, port) = one.recvfrom(_LARGEST)
                 except OSError:  # nothing there, or an earlier packet was refused
                     break
-                head = _HEAD.pack(_PACKET, number, port, _number(host))
-                inputs.put_message(CHANNEL, head + data)
+                _put(inputs, _PACKET, number, port, host, data)
+        self._tcp.receive(lambda *message: _put(inputs, *message))
 
     def send(self, message: bytes) -> None:
         """Do what the board says. Raises SimulationError for a port that is taken."""
         kind, number, port, address = _HEAD.unpack_from(message)
         if not self.address:
             return
-        if kind == _OPEN:
+        if kind >= LISTEN:
+            host = self._reached(address) if address else ""
+            self._tcp.send(kind, number, port, host, message[_HEAD.size :])
+        elif kind == _OPEN:
             self._open(number, port)
         elif kind == _CLOSE and number in self._sockets:
             self._sockets.pop(number).close()
@@ -70,6 +75,7 @@ class Network:
         for one in self._sockets.values():
             one.close()
         self._sockets = {}
+        self._tcp.close()
 
     def _open(self, number: int, port: int) -> None:
         one = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
@@ -92,6 +98,11 @@ class Network:
         except InputError as error:
             raise SimulationError(f"{self.name}: {error}") from None
         return text
+
+
+def _put(inputs: Inputs, kind: int, number: int, port: int, host: str, data: bytes) -> None:
+    head = _HEAD.pack(kind, number, port, _number(host) if host else 0)
+    inputs.put_message(CHANNEL, head + data)
 
 
 def _number(address: str) -> int:

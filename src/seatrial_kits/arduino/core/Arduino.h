@@ -107,7 +107,6 @@ void analogWrite(uint8_t pin, int value);
 void analogReference(uint8_t mode);
 void tone(uint8_t pin, unsigned frequency, uint32_t duration = 0);
 void noTone(uint8_t pin);
-uint32_t pulseIn(uint8_t pin, uint8_t level, uint32_t timeout = 1000000);
 /* Registers of a pin: each pin is bit 0 of a port of its own, and these follow each other in memory. */
 #define NOT_A_PORT 0
 #define digitalPinToPort(pin) ((uint8_t)((pin) + 1))
@@ -115,9 +114,6 @@ uint32_t pulseIn(uint8_t pin, uint8_t level, uint32_t timeout = 1000000);
 volatile uint8_t *portInputRegister(uint8_t port);
 volatile uint8_t *portModeRegister(uint8_t port);
 volatile uint8_t *portOutputRegister(uint8_t port);
-uint32_t pulseInLong(uint8_t pin, uint8_t level, uint32_t timeout = 1000000);
-void shiftOut(uint8_t data, uint8_t clock, uint8_t order, uint8_t value);
-uint8_t shiftIn(uint8_t data, uint8_t clock, uint8_t order);
 
 int16_t digitalPinToInterrupt(int pin);
 void attachInterrupt(uint8_t interrupt, void (*handler)(), int mode);
@@ -130,24 +126,7 @@ int32_t random(int32_t most);
 int32_t random(int32_t least, int32_t most);
 void randomSeed(uint32_t seed);
 
-inline bool isDigit(int c) { return isdigit(c); }
-inline bool isAlpha(int c) { return isalpha(c); }
-inline bool isAlphaNumeric(int c) { return isalnum(c); }
-inline bool isSpace(int c) { return isspace(c); }
-inline bool isWhitespace(int c) { return c == ' ' || c == '\t'; }
-inline bool isUpperCase(int c) { return isupper(c); }
-inline bool isLowerCase(int c) { return islower(c); }
-inline bool isHexadecimalDigit(int c) { return isxdigit(c); }
-inline bool isPunct(int c) { return ispunct(c); }
-inline bool isPrintable(int c) { return isprint(c); }
-inline bool isControl(int c) { return iscntrl(c); }
-inline bool isGraph(int c) { return isgraph(c); }
-inline bool isAscii(int c) { return c >= 0 && c < 128; }
-inline int16_t toAscii(int c) { return (int16_t)(c & 0x7F); }
-inline int16_t toLowerCase(int c) { return (int16_t)tolower(c); }
-inline int16_t toUpperCase(int c) { return (int16_t)toupper(c); }
-inline uint16_t makeWord(uint16_t w) { return w; }
-inline uint16_t makeWord(uint8_t high, uint8_t low) { return (uint16_t)(high << 8 | low); }
+#include "basics.h"
 #define word(...) makeWord(__VA_ARGS__)
 
 void setup();

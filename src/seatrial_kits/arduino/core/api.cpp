@@ -74,42 +74,6 @@ void analogWrite(uint8_t pin, int value)
         machine::modulate(pin, value / 255.0, machine::CLOCK / (fast ? 976.5625 : 490.196));
 }
 
-uint32_t pulseIn(uint8_t pin, uint8_t level, uint32_t timeout)
-{
-    uint64_t latest = machine::now + timeout * 16ull;
-    auto wait = [&](bool until) {
-        while (machine::level(pin) != until && machine::now < latest)
-            machine::pass_until(latest, true);
-    };
-    wait(!level);
-    wait(level);
-    uint64_t begin = machine::now;
-    wait(!level);
-    return machine::now >= latest ? 0 : (uint32_t)((machine::now - begin) / 16);
-}
-
-uint32_t pulseInLong(uint8_t pin, uint8_t level, uint32_t timeout) { return pulseIn(pin, level, timeout); }
-
-void shiftOut(uint8_t data, uint8_t clock, uint8_t order, uint8_t value)
-{
-    for (int i = 0; i < 8; i++) {
-        digitalWrite(data, value >> (order == LSBFIRST ? i : 7 - i) & 1);
-        digitalWrite(clock, HIGH);
-        digitalWrite(clock, LOW);
-    }
-}
-
-uint8_t shiftIn(uint8_t data, uint8_t clock, uint8_t order)
-{
-    uint8_t value = 0;
-    for (int i = 0; i < 8; i++) {
-        digitalWrite(clock, HIGH);
-        value |= (uint8_t)(digitalRead(data) << (order == LSBFIRST ? i : 7 - i));
-        digitalWrite(clock, LOW);
-    }
-    return value;
-}
-
 /* Half a period by timer 2: its register of 8 bits after the first divider for which the period fits. */
 void tone(uint8_t pin, unsigned frequency, uint32_t duration)
 {

@@ -224,36 +224,6 @@ char *dtostre(double value, char *to, unsigned char precision, unsigned char fla
 
 /* ------------------------------------------------------------------ strings */
 
-size_t sketch_strlcpy(char *to, const char *from, size_t size)
-{
-    size_t length = strlen(from), n = length < size ? length : size - 1;
-    if (size) {
-        memcpy(to, from, n);
-        to[n] = 0;
-    }
-    return length;
-}
-
-size_t sketch_strlcat(char *to, const char *from, size_t size)
-{
-    size_t before = strnlen(to, size);
-    return before + (before < size ? sketch_strlcpy(to + before, from, size - before) : strlen(from));
-}
-
-char *strupr(char *text)
-{
-    for (char *c = text; *c; c++)
-        *c = (char)toupper((unsigned char)*c);
-    return text;
-}
-
-char *strlwr(char *text)
-{
-    for (char *c = text; *c; c++)
-        *c = (char)tolower((unsigned char)*c);
-    return text;
-}
-
 char *strrev(char *text)
 {
     for (char *a = text, *b = text + strlen(text); a < b;) {

@@ -32,14 +32,8 @@ char *ltoa(long value, char *to, int base);
 char *utoa(unsigned value, char *to, int base);
 char *ultoa(unsigned long value, char *to, int base);
 
-size_t sketch_strlcpy(char *to, const char *from, size_t size);
-size_t sketch_strlcat(char *to, const char *from, size_t size);
-#define strlcpy sketch_strlcpy
-#define strlcat sketch_strlcat
 #define strlcpy_P sketch_strlcpy
 #define strlcat_P sketch_strlcat
-char *strupr(char *text);
-char *strlwr(char *text);
 char *strrev(char *text);
 
 typedef int16_t (*sketch_comparison)(const void *, const void *);

@@ -7,6 +7,7 @@
 
 typedef int16_t sketch_int; /* int and double of a sketch */
 typedef float sketch_real;
+typedef uint32_t sketch_ulong; /* unsigned long */
 
 namespace board {
 

@@ -125,10 +125,6 @@ void analogSetAttenuation(adc_attenuation_t attenuation);
 void analogSetPinAttenuation(uint8_t pin, adc_attenuation_t attenuation);
 inline bool adcAttachPin(uint8_t) { return true; }
 void dacWrite(uint8_t pin, uint8_t value);
-unsigned long pulseIn(uint8_t pin, uint8_t level, unsigned long timeout = 1000000);
-unsigned long pulseInLong(uint8_t pin, uint8_t level, unsigned long timeout = 1000000);
-void shiftOut(uint8_t data, uint8_t clock, uint8_t order, uint8_t value);
-uint8_t shiftIn(uint8_t data, uint8_t clock, uint8_t order);
 /* Registers of a pin: each pin is bit 0 of a port of its own, and the rest of its 32 bits stays as it is. */
 #define NOT_A_PORT 0
 #define digitalPinToPort(pin) ((uint8_t)((pin) + 1))
@@ -147,24 +143,7 @@ long random(long least, long most);
 void randomSeed(unsigned long seed);
 uint32_t esp_random();
 
-inline bool isDigit(int c) { return isdigit(c); }
-inline bool isAlpha(int c) { return isalpha(c); }
-inline bool isAlphaNumeric(int c) { return isalnum(c); }
-inline bool isSpace(int c) { return isspace(c); }
-inline bool isWhitespace(int c) { return c == ' ' || c == '\t'; }
-inline bool isUpperCase(int c) { return isupper(c); }
-inline bool isLowerCase(int c) { return islower(c); }
-inline bool isHexadecimalDigit(int c) { return isxdigit(c); }
-inline bool isPunct(int c) { return ispunct(c); }
-inline bool isPrintable(int c) { return isprint(c); }
-inline bool isControl(int c) { return iscntrl(c); }
-inline bool isGraph(int c) { return isgraph(c); }
-inline bool isAscii(int c) { return c >= 0 && c < 128; }
-inline int toAscii(int c) { return c & 0x7F; }
-inline int toLowerCase(int c) { return tolower(c); }
-inline int toUpperCase(int c) { return toupper(c); }
-inline uint16_t makeWord(uint16_t w) { return w; }
-inline uint16_t makeWord(uint8_t high, uint8_t low) { return (uint16_t)(high << 8 | low); }
+#include "basics.h"
 
 void setup();
 void loop();

@@ -3,6 +3,8 @@
 #define WiFi_h
 
 #include "Arduino.h"
+#include "WiFiClient.h"
+#include "WiFiServer.h"
 #include "WiFiUdp.h"
 
 typedef enum { WL_NO_SHIELD = 255, WL_IDLE_STATUS = 0, WL_NO_SSID_AVAIL, WL_SCAN_COMPLETED, WL_CONNECTED, WL_CONNECT_FAILED, WL_CONNECTION_LOST, WL_DISCONNECTED } wl_status_t;

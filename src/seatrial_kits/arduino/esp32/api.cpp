@@ -3,9 +3,6 @@
 #include "machine.h"
 #include "soc/gpio_struct.h"
 
-#undef strlcpy
-#undef strlcat
-
 using machine::charge;
 
 /* ------------------------------------------------------------------ time */
@@ -73,42 +70,6 @@ uint32_t analogReadMilliVolts(uint8_t pin)
 {
     double most;
     return (uint32_t)lround(read_volts(pin, most) * 1000.0);
-}
-
-unsigned long pulseIn(uint8_t pin, uint8_t level, unsigned long timeout)
-{
-    uint64_t latest = machine::now + timeout * US;
-    auto wait = [&](bool until) {
-        while (machine::level(pin) != until && machine::now < latest)
-            machine::pass_until(latest, true);
-    };
-    wait(!level);
-    wait(level);
-    uint64_t begin = machine::now;
-    wait(!level);
-    return machine::now >= latest ? 0 : (unsigned long)((machine::now - begin) / US);
-}
-
-unsigned long pulseInLong(uint8_t pin, uint8_t level, unsigned long timeout) { return pulseIn(pin, level, timeout); }
-
-void shiftOut(uint8_t data, uint8_t clock, uint8_t order, uint8_t value)
-{
-    for (int i = 0; i < 8; i++) {
-        digitalWrite(data, value >> (order == LSBFIRST ? i : 7 - i) & 1);
-        digitalWrite(clock, HIGH);
-        digitalWrite(clock, LOW);
-    }
-}
-
-uint8_t shiftIn(uint8_t data, uint8_t clock, uint8_t order)
-{
-    uint8_t value = 0;
-    for (int i = 0; i < 8; i++) {
-        digitalWrite(clock, HIGH);
-        value |= (uint8_t)(digitalRead(data) << (order == LSBFIRST ? i : 7 - i));
-        digitalWrite(clock, LOW);
-    }
-    return value;
 }
 
 /* ------------------------------------------------------------------ interrupts */
@@ -240,36 +201,6 @@ char *dtostrf(double value, signed char width, unsigned char precision, char *to
     charge(200);
     sprintf(to, "%*.*f", width, precision, value);
     return to;
-}
-
-char *strupr(char *text)
-{
-    for (char *c = text; *c; c++)
-        *c = (char)toupper(*c);
-    return text;
-}
-
-char *strlwr(char *text)
-{
-    for (char *c = text; *c; c++)
-        *c = (char)tolower(*c);
-    return text;
-}
-
-size_t sketch_strlcpy(char *to, const char *from, size_t size)
-{
-    size_t length = strlen(from), n = length < size ? length : size - 1;
-    if (size) {
-        memcpy(to, from, n);
-        to[n] = 0;
-    }
-    return length;
-}
-
-size_t sketch_strlcat(char *to, const char *from, size_t size)
-{
-    size_t before = strnlen(to, size);
-    return before + (before < size ? sketch_strlcpy(to + before, from, size - before) : strlen(from));
 }
 
 bool IPAddress::fromString(const char *text)

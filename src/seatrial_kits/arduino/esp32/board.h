@@ -7,6 +7,7 @@
 
 typedef int sketch_int; /* int and double of a sketch */
 typedef double sketch_real;
+typedef unsigned long sketch_ulong;
 
 namespace board {
 

@@ -9,10 +9,4 @@ char *ultoa(unsigned long value, char *to, int base);
 char *lltoa(long long value, char *to, int base);
 char *ulltoa(unsigned long long value, char *to, int base);
 char *dtostrf(double value, signed char width, unsigned char precision, char *to);
-char *strupr(char *text);
-char *strlwr(char *text);
-size_t sketch_strlcpy(char *to, const char *from, size_t size);
-size_t sketch_strlcat(char *to, const char *from, size_t size);
-#define strlcpy sketch_strlcpy
-#define strlcat sketch_strlcat
 #endif

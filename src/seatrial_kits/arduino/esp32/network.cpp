@@ -1,23 +1,14 @@
-/* WiFi and UDP: messages to and from the sockets in the process that steps the board. */
+/* WiFi and UDP; their messages go to and come from the sockets in the process that steps the board. */
 #include <deque>
 
 #include "WiFi.h"
 #include "machine.h"
+#include "network.h"
 
 using machine::charge;
+using namespace network;
 
 namespace {
-
-/* See network.py. */
-enum Kind : uint8_t { ADDRESS, OPEN, CLOSE, PACKET };
-#pragma pack(push, 1)
-struct Head {
-    Kind kind;
-    uint8_t socket;
-    uint16_t port;
-    uint32_t address;
-};
-#pragma pack(pop)
 
 constexpr int SOCKETS = 8;
 constexpr size_t MOST = 1460, WAITING = 16; /* packets beyond are lost */
@@ -36,21 +27,23 @@ void take(const uint8_t *data, size_t size)
     memcpy(&head, data, sizeof head);
     if (head.kind == ADDRESS)
         own_address = head.address;
+    else if (head.kind >= LISTEN)
+        take_tcp(head, (const char *)data + sizeof head, size - sizeof head);
     else if (head.socket < SOCKETS && sockets[head.socket].open && sockets[head.socket].packets.size() < WAITING)
         sockets[head.socket].packets.emplace_back((const char *)data, size);
 }
 
-void put(Kind kind, int socket, uint16_t port, uint32_t address, const std::string &data = "")
+bool listens = (machine::receive_messages(machine::NETWORK_MESSAGES, take), true);
+
+} // namespace
+
+void network::put(Kind kind, int socket, uint16_t port, uint32_t address, const std::string &data)
 {
     Head head = {kind, (uint8_t)socket, port, address};
     std::string whole((const char *)&head, sizeof head);
     whole += data;
     machine::send_message(machine::NETWORK_MESSAGES, whole.data(), whole.size());
 }
-
-bool listens = (machine::receive_messages(machine::NETWORK_MESSAGES, take), true);
-
-} // namespace
 
 WiFiClass WiFi;
 

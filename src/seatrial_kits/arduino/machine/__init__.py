@@ -4,6 +4,8 @@ DATA_FILES = (
     "Print.h",
     "Stream.h",
     "WString.h",
+    "basics.cpp",
+    "basics.h",
     "crashes.h",
     "interrupts.h",
     "machine.cpp",
