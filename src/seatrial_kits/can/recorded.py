@@ -28,7 +28,7 @@ _BROADCAST = 0xF0
 """PDU format from which on an identifier has no destination (ISO 11783-3)."""
 
 
-_ALL_WHOLE = ("# format=FAST", "!PDGY", "$PCDIN", "A0", "A1", "A2")
+_ALL_WHOLE = ("# format=FAST", "Sequence #", "!PDGY", "$PCDIN", "A0", "A1", "A2")
 """Beginnings of lines of texts in which every line is a whole message."""
 
 
@@ -91,6 +91,10 @@ _PCDIN = re.compile(
     r"\$PCDIN,(?P<pgn>[0-9A-Fa-f]{5,6}),(?P<time>[0-9A-Fa-f]{8}),(?P<source>[0-9A-Fa-f]{2}),"
     r"(?P<data>(?:[0-9A-Fa-f]{2})+)(?:\*[0-9A-Fa-f]{2})?"
 )
+_GARMIN = re.compile(
+    r"\d+,(?:\d+(?:_\d+){5}_)?(?P<ticks>\d+),(?P<pgn>\d+),.*?,(?P<source>\d+),(?P<to>\d+),"
+    r"(?P<priority>\d),[01],(?P<size>\d+),0x(?P<data>(?:[0-9A-Fa-f]{2})+)\s*$"
+)
 
 
 def is_recording(path: Path, head: bytes) -> bool:
@@ -108,10 +112,10 @@ def recorded_frames(
 
     Read are ``candump`` and ``candump -L``, -ta, -tz, with frames of CAN FD and remote ones; .blf,
     .asc, .trc and .mf4 by python-can; and, of NMEA 2000 networks, the text of Yacht Devices'
-    gateways, canboat's, Actisense's N2K ASCII, $PCDIN, and Digital Yacht's !PDGY. Messages that
-    are longer than a frame become fast packets again, with those that are shorter but of a PGN
-    that goes as fast packets: those that ``is_fast`` says, of which one in the file is longer, and
-    proprietary ones. Times are as the file has them, s; past midnight they go on.
+    gateways, canboat's, Actisense's N2K ASCII, $PCDIN, Digital Yacht's !PDGY and Garmin's CSV.
+    Messages that are longer than a frame become fast packets again, with those that are shorter
+    but of a PGN that goes as fast packets: those that ``is_fast`` says, of which one in the file is
+    longer, and proprietary ones. Times are as the file has them, s; past midnight they go on.
 
     Lines that are no frame, and error frames, are counted in ``skipped``. Raises InputError for a
     file that cannot be read.
@@ -291,6 +295,14 @@ def _ikonvert(match: re.Match[str]) -> _Parsed:
     return _message(match, base64.b64decode(match["data"], validate=True), float(match["time"]))
 
 
+def _garmin(match: re.Match[str]) -> _Parsed | None:
+    data = bytes.fromhex(match["data"])
+    if len(data) != int(match["size"]):
+        return None  # a line that is cut
+    # The date before the ticks has whole seconds of another clock.
+    return _message(match, data, int(match["ticks"]) / 1000.0)
+
+
 def _pcdin(match: re.Match[str]) -> _Parsed:
     return _message(match, bytes.fromhex(match["data"]), int(match["time"], 16) / 1024.0, 16)
 
@@ -325,4 +337,5 @@ _LINES: tuple[tuple[re.Pattern[str], Callable[[re.Match[str]], _Parsed | None]],
     (_IKONVERT, _ikonvert),
     (_PCDIN, _pcdin),
     (_ANGSTROM, _angstrom),
+    (_GARMIN, _garmin),
 )

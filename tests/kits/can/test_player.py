@@ -37,6 +37,9 @@ LINES = {
     "Actisense": "A061732.249 23FF2 1F112 FF103BFF7FCEF5FC",
     "iKonvert": "!PDGY,127250,2,35,255,22652.249,"
     + base64.b64encode(bytes.fromhex("FF103BFF7FCEF5FC")).decode(),
+    "Garmin": "7,22652249,127250,Vessel Heading,Garmin,35,255,2,1,8,0xFF103BFF7FCEF5FC",
+    "Garmin, with the date": "7,6_21_2015_16_11_14_22652249,127250,Processed,Vessel Heading,"
+    "Unknown Manufacturer,35,255,2,1,8,0xFF103BFF7FCEF5FC",
 }
 TIMELESS = {
     "candump": "  can0  09F11223   [8]  FF 10 3B FF 7F CE F5 FC",

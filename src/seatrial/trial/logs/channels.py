@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from array import array
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from datetime import datetime
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +17,22 @@ from ...errors import InputError, unknown
 
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
+_NAMED = 10
+"""Kinds of entries that a note names."""
+
+
+def not_read(kinds: Counter[Any], noun: str) -> list[str]:
+    """Return the note on kinds of entries that no channel has, with their numbers; none without.
+
+    The ten most frequent ones are named.
+    """
+    if not kinds:
+        return []
+    ordered = sorted(kinds.items(), key=lambda each: (-each[1], str(each[0])))
+    named = [f"{kind} ({count})" for kind, count in ordered[:_NAMED]]
+    more = len(ordered) - len(named)
+    named += [f"{more} others ({sum(count for _, count in ordered[_NAMED:])})"] if more else []
+    return [f"{noun} that are not read: {', '.join(named)}"]
 
 
 @dataclass(frozen=True, eq=False)

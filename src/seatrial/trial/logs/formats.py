@@ -68,7 +68,10 @@ def read_log(path: Path, format_name: str | None = None, time: Column | None = N
             raise InputError(f"{path}: {chosen.title}: {said}") from None
         raise
     if not log.channels:
-        raise InputError(f"{path}: no channel was found in it, read as {chosen.title} ({name})")
+        there = "".join(f"; {note}" for note in log.notes)
+        raise InputError(
+            f"{path}: no channel was found in it, read as {chosen.title} ({name}){there}"
+        )
     return log if log.defaults else replace(log, defaults=chosen.defaults)
 
 

@@ -26,7 +26,8 @@ def _texts(row: Row) -> tuple[str, ...]:
     before = "" if row.is_current else number(row.before, 4)
     if not row.is_identifiable:
         return (row.name, before, "kept", "", row.unit, "no", "")
-    half, drawn = (number(WITHIN * each, 2) for each in (row.deviation, row.resampled))
+    errors = (row.deviation, row.resampled)
+    half, drawn = (number(WITHIN * each + row.integration, 2) for each in errors)
     said = "hardly" if row.partner else "yes"
     return (row.name, before, number(row.value, 4), half, row.unit, said, drawn)
 

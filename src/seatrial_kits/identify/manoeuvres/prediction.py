@@ -48,6 +48,8 @@ class Motion:
     """(m, g), the mean over each step."""
     start: Vector
     """State at the first row, a guess where it is among `STARTS`."""
+    source: Inputs
+    """What ``inputs`` are the means of."""
 
     @property
     def measured(self) -> Vector:
@@ -116,10 +118,10 @@ def motion_of(craft: Craft, record: Record, inputs: Inputs) -> Motion:
 
     The step is the longest up to 2 s whose track differs from that of half the step by no more
     than 1e-5 of the span; the craft's own longest step is always taken. States that are neither
-    unknown nor measured are those after 30 s of the first inputs. Raises InputError if the
-    equations do not follow the inputs.
+    unknown nor measured are those after 30 s of the first inputs, or those of a craft at rest.
+    Raises InputError if the equations do not follow the inputs.
     """
-    start = _first_state(craft, record, inputs.values[0])
+    start = _first_state(craft, record, inputs)
     shown = thinned(record, MOST_ROWS)
     usual = float(np.median(np.diff(shown.time)))
     step = min(_LONGEST, usual)
@@ -143,18 +145,14 @@ def _on_grid(shown: Record, inputs: Inputs, start: Vector, step: float) -> Motio
     counts = np.maximum(np.ceil(lengths / step - 1e-9), 1.0).astype(int)
     steps = np.append(np.repeat(lengths / counts, counts), step)
     begins = shown.start + np.concatenate(([0.0], np.cumsum(steps[:-1])))
-    given = _means(inputs, np.append(begins, begins[-1] + step))
-    return Motion(shown, np.concatenate(([0], np.cumsum(counts))), steps, given, start)
+    given = inputs.means(np.append(begins, begins[-1] + step))
+    return Motion(shown, np.concatenate(([0], np.cumsum(counts))), steps, given, start, inputs)
 
 
-def _means(inputs: Inputs, edges: Vector) -> Vector:
-    """Return the means (m, g) of the inputs between edges (g + 1,): their impulse is kept."""
-    time = np.union1d(inputs.time, edges)
-    values = np.array([np.interp(time, inputs.time, column) for column in inputs.values.T])
-    areas = np.cumsum(np.diff(time) * (values[:, 1:] + values[:, :-1]) / 2.0, axis=1)
-    whole = np.column_stack((np.zeros(len(values)), areas))
-    means: Vector = np.diff(whole[:, np.searchsorted(time, edges)], axis=1) / np.diff(edges)
-    return means
+def halved(motion: Motion) -> Motion:
+    """Return a pass with steps of half the length."""
+    step = float(motion.steps.max()) / 2.0
+    return _on_grid(motion.record, motion.source, motion.start, step)
 
 
 def _track(craft: Craft, motion: Motion) -> Vector:
@@ -166,13 +164,13 @@ def _track(craft: Craft, motion: Motion) -> Vector:
     return np.column_stack((motion.start[:, None], states[:, :-1]))[places][:, motion.rows]
 
 
-def _first_state(craft: Craft, record: Record, inputs: Vector) -> Vector:
+def _first_state(craft: Craft, record: Record, inputs: Inputs) -> Vector:
     p, step = np.array(list(craft.parameters.values())), float(craft.plant.max_step)
     x = craft.start.copy()
     first = _guess(record)
     x[craft.places(("u", "v", "r"))] = first["u"], first["v"], first["r"]
-    for _ in range(round(_SETTLING / step)):
-        x = np.asarray(craft.model.rk4(x, inputs, p, step)).ravel()
+    for _ in range(0 if inputs.from_rest else round(_SETTLING / step)):
+        x = np.asarray(craft.model.rk4(x, inputs.values[0], p, step)).ravel()
     if not np.isfinite(x).all():
         raise InputError(f"the equations of {craft.name} do not settle with the first orders")
     for name, value in first.items():

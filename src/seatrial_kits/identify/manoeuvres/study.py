@@ -17,7 +17,7 @@ from .craft import Craft
 from .identifiability import Identifiability, identifiability
 from .intervals import WITHIN, bootstrap, deviations
 from .passes import Pass
-from .prediction import Motion, motion_of
+from .prediction import Motion, halved, motion_of
 from .problem import Problem, Solution
 from .replay import inputs_of
 
@@ -42,6 +42,8 @@ class Row:
     """Standard deviation, by the information matrix; what it would be, of one that is kept."""
     resampled: float
     """The same by bootstrap; 0 of one that is kept."""
+    integration: float
+    """How much half the steps of the integration changed it."""
     is_identifiable: bool
     """Whether the passes show it; else it keeps its value."""
     partner: str
@@ -51,9 +53,17 @@ class Row:
 
     @property
     def interval(self) -> tuple[float, float]:
-        """Interval of 95 %, by the larger one of both deviations."""
-        half = WITHIN * max(self.deviation, self.resampled)
-        return self.value - half, self.value + half
+        """Interval of 95 %, see `half`."""
+        return self.value - self.half, self.value + self.half
+
+    @property
+    def half(self) -> float:
+        """Half of the interval: by the larger one of both deviations, and the error of the steps.
+
+        The value is that of half the steps. The error of a method of order p >= 1 is then
+        1 / (2^p - 1) times the change by halving, no more than that change (Richardson).
+        """
+        return WITHIN * max(self.deviation, self.resampled) + self.integration
 
 
 @dataclass(frozen=True)
@@ -117,14 +127,17 @@ def manoeuvre_study(
 
     Output error: every pass is simulated from its orders alone, and parameters, the current and
     the state at the first row of each pass are chosen so that north, east and heading are nearest
-    to those of the log, each weighted by its own residual. Parameters that the passes do not show
-    (`identifiability`) keep the values of the file. ``checks`` are passes that choose no
+    to those of the log, each weighted by its own residual. Actuators followed the first orders
+    before, or start from rest, whichever is nearer to the log. Parameters that the passes do not
+    show (`identifiability`) keep the values of the file. ``checks`` are passes that choose no
     parameter: they are simulated with those found. Raises InputError as `inputs_of` and
     `motion_of` do, and if the passes show no parameter.
     """
 
     def motion(run: Pass) -> Motion:
-        return motion_of(craft, run.record, inputs_of(craft, vehicle, variant, run))
+        inputs = inputs_of(craft, vehicle, variant, run)
+        first, *others = [motion_of(craft, run.record, each) for each in inputs]
+        return min((first, *others), key=lambda m: _left(craft, m, free)) if others else first
 
     problem = Problem(craft, [motion(run) for run in passes], free)
     held = problem.solve(problem.named, problem.guess(), prior=_PRIOR)
@@ -136,12 +149,14 @@ def manoeuvre_study(
         )
     start = held.unknowns.copy()
     start[[problem.named.index(name) for name in which.kept]] = 0.0
-    final = problem.solve(which.shown, start, scales=held.scales)
+    rough = problem.solve(which.shown, start, scales=held.scales)
+    problem = Problem(craft, [halved(each) for each in problem.motions], free)
+    final = problem.solve(which.shown, rough.unknowns, scales=rough.scales)
     start = final.unknowns.copy()
     start[: len(problem.free)] = 0.0
     currents = [name for name in which.shown if name not in problem.free]
     before = problem.solve(currents, start, scales=held.scales)
-    rows = _rows(problem, final, which)
+    rows = _rows(problem, final, which, np.abs(final.unknowns - rough.unknowns))
     shown = _shown(problem, passes, before, final)
     if checks:
         others = Problem(craft, [motion(run) for run in checks], free)
@@ -150,6 +165,16 @@ def manoeuvre_study(
         shown += _shown(others, checks, *both, is_fitted=False)
     notes, verdicts = _notes(problem, final, which), _verdicts(craft, rows, shown)
     return ManoeuvreStudy(vehicle, craft, rows, tuple(notes), shown, tuple(verdicts))
+
+
+def _left(craft: Craft, motion: Motion, free: Sequence[str]) -> float:
+    """Return what of a pass the equations leave: the product of the residuals of all readings.
+
+    The least product is the most likely of normal residuals whose variances are not known.
+    """
+    problem = Problem(craft, [motion], free)
+    found = problem.solve(problem.named, problem.guess(), prior=_PRIOR)
+    return float(np.prod(found.scales))
 
 
 def _followed(problem: Problem, changes: Vector) -> Solution:
@@ -179,7 +204,9 @@ def _shown(
     )
 
 
-def _rows(problem: Problem, final: Solution, which: Identifiability) -> tuple[Row, ...]:
+def _rows(
+    problem: Problem, final: Solution, which: Identifiability, integration: Vector
+) -> tuple[Row, ...]:
     named, craft = problem.named, problem.craft
     places = [i for i, name in enumerate(named) if name in which.shown]
     kept = [i for i, name in enumerate(problem.free) if name in which.kept]
@@ -204,6 +231,7 @@ def _rows(problem: Problem, final: Solution, which: Identifiability) -> tuple[Ro
                 old + scale * float(final.unknowns[place]),
                 abs(scale) * float(deviation),
                 abs(scale) * float(drawn),
+                abs(scale) * float(integration[place]),
                 name in which.shown,
                 partners.get(name, ""),
                 is_current,

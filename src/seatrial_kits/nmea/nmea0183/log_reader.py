@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from seatrial.errors import InputError
-from seatrial.trial.logs.channels import Array, Log, Samples
+from seatrial.trial.logs.channels import Array, Log, Samples, not_read
 from seatrial.trial.logs.clock_times import date_of, of_day, parsed_time, past_midnight
 from seatrial.trial.logs.reading_progress import open_text
 
@@ -84,9 +84,15 @@ def read(path: Path) -> Log:
     Raises InputError for a file without a sentence, or without a time.
     """
     skipped: Counter[str] = Counter()
-    lines = _lines(path, skipped)
+    others: Counter[str] = Counter()
+    lines = _lines(path, skipped, others)
+    unread = not_read(others, "sentences")
     if not lines:
-        raise InputError(f"{path}: no sentence with a good checksum was found: no NMEA 0183 log")
+        there = "".join(f"; {note}" for note in unread)
+        raise InputError(
+            f"{path}: no sentence with a good checksum that a channel has was found: no NMEA 0183 "
+            f"log{there}"
+        )
     stamps = {line.stamp for line in lines}
     if None not in stamps and (len(stamps) > 1 or len(lines) == 1):
         times = past_midnight([line.stamp or 0.0 for line in lines])
@@ -103,16 +109,18 @@ def read(path: Path) -> Log:
             for name, (unit, value) in values_of(line.message).items():
                 since = float(moment) - begun
                 samples.add(name, unit, since, value, line.number, line.message.talker)
-    notes = tuple(f"{count} {what}" for what, count in skipped.items())
+    notes = (*(f"{count} {what}" for what, count in skipped.items()), *unread)
     return Log(path, samples.channels(), start=start, notes=notes, row="line")
 
 
-def _lines(path: Path, skipped: Counter[str]) -> list[_Line]:
+def _lines(path: Path, skipped: Counter[str], others: Counter[str]) -> list[_Line]:
+    """Return the sentences that are read; count those of other formatters, and other lines."""
     found = []
     with open_text(path, "latin-1") as file:
         for number, line in enumerate(file, 1):
             sentence = SENTENCE.search(line)
             if sentence is not None and sentence.group()[3:6] not in KINDS:
+                others[sentence.group()[3:6]] += 1
                 continue
             message = None if sentence is None else decode(sentence.group().encode("latin-1"))
             if sentence is None or message is None:

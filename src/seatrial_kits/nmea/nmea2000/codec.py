@@ -157,11 +157,17 @@ def header(frame: Frame) -> tuple[int, int, int, int]:
     return found
 
 
+@cache
+def _singles() -> Any:
+    """Return the decoder of messages of one frame, of which it keeps nothing; slow to make."""
+    return NMEA2000Decoder()
+
+
 @lru_cache(1024)  # a frame is read by all nodes of a bus
 def _single(identifier: int, data: bytes) -> Message | None:
     frame = Frame(identifier, data, extended=True)
     pgn, source, destination, _ = header(frame)
-    whole = _decoded(NMEA2000Decoder(), frame)
+    whole = _decoded(_singles(), frame)
     if whole is None:
         return None
     return _read(whole, pgn, source, destination, len(data))

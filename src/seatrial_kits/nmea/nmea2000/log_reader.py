@@ -7,7 +7,7 @@ from collections import Counter
 from pathlib import Path
 
 from seatrial.errors import InputError
-from seatrial.trial.logs.channels import Log, Samples
+from seatrial.trial.logs.channels import Log, Samples, not_read
 from seatrial.trial.logs.clock_times import date_of
 from seatrial_kits.can.recorded import recorded_frames
 
@@ -57,7 +57,8 @@ def read(path: Path) -> Log:
     """
     skipped: Counter[str] = Counter()
     decoder, samples = Decoder({}), Samples()
-    others, begun = set(), None
+    others: Counter[int] = Counter()
+    begun = None
     variation: list[float] = []
     for row, time, _, frame in recorded_frames(path, skipped, is_fast):
         if not frame.extended or frame.remote or frame.fd:
@@ -67,7 +68,7 @@ def read(path: Path) -> Log:
         begun = time if begun is None else begun
         pgn = header(frame)[0]
         if pgn not in READERS:
-            others.add(pgn)
+            others[pgn] += 1
         elif (message := decoder.decode(frame)) is not None:
             if pgn == _FIX and message.fields.get("method") == _NO_GNSS:
                 skipped["positions (129029) without a fix are left out"] += 1
@@ -76,8 +77,7 @@ def read(path: Path) -> Log:
     if begun is None:
         raise InputError(f"{path}: no frame of an NMEA 2000 network was found")
     notes = [f"{count} {what}" for what, count in skipped.items()]
-    if others:
-        notes.append(f"{len(others)} PGNs are not read: {', '.join(map(str, sorted(others)))}")
+    notes += not_read(others, "PGNs")
     return Log(path, samples.channels(), start=date_of(begun), notes=tuple(notes), row="line")
 
 

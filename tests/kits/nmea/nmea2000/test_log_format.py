@@ -78,7 +78,20 @@ def test_two_sources_and_what_is_not_read(read):
     )
     assert found.channels["128267.depth"].values.tolist() == [12.34]
     assert found.channels["36/128267.depth"].values.tolist() == [20.0]
-    assert found.notes == ("1 lines that are no frame are skipped", "1 PGNs are not read: 127508")
+    assert found.notes == (
+        "1 lines that are no frame are skipped",
+        "PGNs that are not read: 127508 (1)",
+    )
+
+
+def test_a_network_of_other_messages_names_them(read):
+    """Most frequent first, ten of them."""
+    lines = [line(1.0, 130820 + k, bytes(8)) for k in range(14) for _ in range(2 if k == 13 else 1)]
+    with pytest.raises(InputError, match="no channel was found") as refused:
+        read(*lines)
+    said = str(refused.value)
+    assert "PGNs that are not read: 130833 (2), 130820 (1)," in said
+    assert said.endswith("130828 (1), 4 others (4)")
 
 
 def test_rudder_attitude_and_motion(read):
