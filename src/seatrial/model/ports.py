@@ -46,13 +46,28 @@ BYTES = ("bytes", "can")
 """Roles of texts that are bytes with their times."""
 
 VIEWS = {
+    "deck": ("attitude", "place", "size"),
     "estimate": ("place", "home", "error", "passed"),
+    "field-of-view": ("attitude", "height", "angle", "reach", "seen"),
+    "foreseen": ("attitude", "now", "place", "turn", "time", "aim"),
     "landing-point": ("place", "phase"),
     "line": ("north", "east", "down"),
+    "state": ("attitude", "value", "first", "words"),
+    "target": ("attitude", "place", "radius"),
     "waypoints": ("count", "place"),
     "wind": ("velocity",),
 }
 """Kinds of views and the ports that each names.
+
+``attitude`` is an input: whose attitude feeds it carries what is drawn. deck: parameters, a place
+on a deck (x, y and z from the body origin, m), its length and breadth about the origin (x and y,
+m). field-of-view: parameters of a camera that looks along the body's z, its height below the origin
+(m), half of its angle (rad) and its reach (m), and an output, whether it sees what it looks for.
+foreseen: outputs, where a pad is taken to be now, and where and how turned at a time (north, east
+and down in {n}, m; Euler angles ZYX, rad; s), and the time of a touch-down that is decided (s); 0
+while there is none. state: an output, a whole number from the number ``first`` on, and the
+``words`` for each, with commas between, empty for nothing to say. target: parameters, the middle of
+a circle on a deck (x, y and z, m) and its radius (m).
 
 estimate: outputs, where an autopilot takes itself and its home to be (north, east and down in
 {n}, m), all 0 while it says neither, how far off the former is (m), and how many waypoints are

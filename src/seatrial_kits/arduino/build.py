@@ -53,7 +53,18 @@ FAMILIES = {
     # A computer's 32 bits are this board's: int, long, pointers and size_t; char has no sign.
     "esp32": Family(
         "esp32",
-        ("api", "devices", "network", "pulses", "queues", "storage", "tasks", "tcp", "timers", "twai"),
+        (
+            "api",
+            "devices",
+            "network",
+            "pulses",
+            "queues",
+            "storage",
+            "tasks",
+            "tcp",
+            "timers",
+            "twai",
+        ),
         ("-m32", "-msse2", "-mfpmath=sse", "-funsigned-char", "-fasynchronous-unwind-tables"),
         ("-malign-double",),
         narrows=False,

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import ClassVar
 
+from seatrial.devices.sensor import Measured, Sensor, Value
 from seatrial.model.component import Input, Parameter, terminal
 from seatrial.physics.craft.kinematics import to_body, to_ned
-from seatrial.devices.sensor import Measured, Sensor, Value
 
 
 class DeckRange(Sensor):

@@ -149,6 +149,7 @@ class Multirotor(Plant):
         ),
         "wrench": terminal("force", "moment"),
     }
+    views: ClassVar = {"deck": {"attitude": "deck_attitude", "place": "pad", "size": "deck_size"}}
     exercised: ClassVar = {
         "position_start": [0.02, 0.01, -0.449],
         "command": [500.0, 520.0, 540.0, 560.0],

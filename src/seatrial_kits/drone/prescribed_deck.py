@@ -7,9 +7,12 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import ClassVar
 
+import numpy as np
+
 from seatrial.model.component import Component, Noise, Output, Parameter, terminal
 from seatrial.model.waypoints import NED
 from seatrial.physics.craft.kinematics import cross, to_body, to_ned
+from seatrial.physics.sea.waves import Waves
 
 from .wave_follower import Follower, drawn, moved, period_of, read
 
@@ -60,6 +63,13 @@ class PrescribedDeck(Noise, Component):
         for each in raft.components:
             self._waves.append(each)
         self._period, self._height = raft.period, raft.pad_height
+
+    def sea(self) -> Waves | None:
+        """Return the waves that a started deck follows; None for a deck at rest."""
+        waves = np.array(self._waves)
+        omega, amplitude, phase, heave, _, _, north, east = waves.T
+        towards = np.arctan2(east * heave, north * heave)  # surge has the sign of the heave
+        return Waves(amplitude, omega, towards, phase) if amplitude.any() else None
 
     def _drawn(self) -> Follower:
         draw = self.generator(0)

@@ -76,6 +76,16 @@ class RelativePose(Sensor):
         "sight": terminal("offset", "exposed", sight_valid="valid", sight_count="count"),
     }
 
+    views: ClassVar = {
+        "field-of-view": {
+            "attitude": "attitude",
+            "height": "lens",
+            "angle": "half_angle",
+            "reach": "reach",
+            "seen": "valid",
+        }
+    }
+
     _SEEN = ("position", "attitude", "deck_position", "deck_attitude", "fault")
     feedthrough: ClassVar = {
         "valid": _SEEN,

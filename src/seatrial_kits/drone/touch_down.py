@@ -78,6 +78,15 @@ class TouchDown(Component):
             rates="deck_rates",
         ),
     }
+    views: ClassVar = {
+        "state": {
+            "attitude": "attitude",
+            "value": "landed",
+            "first": "-1",
+            "words": "landing failed, , rests on the deck",
+        },
+        "target": {"attitude": "deck_attitude", "place": "pad", "radius": "radius"},
+    }
     _LATCHED = ("touch_error", "touch_speed", "touch_aside", "touch_tilt", "deck_tilt")
     _KEPT = (*_LATCHED, "touched", "touch_time", "landed", "failure", "energy", "peak_load")
     feedthrough: ClassVar = {

@@ -27,6 +27,7 @@ from .motion import Frame, Motion
 from .pilot import Pilot
 from .scene import Scene
 from .server import PageServer, look
+from .views import html_of_words
 
 _PANEL_S = 0.5
 _MOST_LINES = 100
@@ -140,6 +141,7 @@ class LivePage:
             f'<div class="state" data-time="{now!r}" style="padding:0 .8em;font-size:1.1em">'
             f"<b>{number(now, 6)} s</b> of {number(self._manifest['stop'])} s, "
             f"{number(rate, 2)} &times; real time</div>"
+            + html_of_words("" if self._scene is None else self._scene.views.words(frame))
         )
         names = {*self._charts.shown, *self._lights.signals, *self._places()}
         times, columns = self._history.columns(names)

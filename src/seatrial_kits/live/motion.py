@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -13,6 +14,8 @@ from seatrial.trial.records import quaternions
 from seatrial.trial.records.run_folder import Run
 from seatrial.trial.records.scene import Craft, crafts
 
+NED_IN_ENU = (0.0, math.sqrt(0.5), math.sqrt(0.5), 0.0)
+"""Quaternion (w, x, y, z) that takes {n} to the world."""
 _FRD = np.array([0.0, 1.0, 0.0, 0.0])
 """Quaternion (w, x, y, z) that takes ahead, starboard, down to ahead, left, up."""
 
@@ -52,6 +55,13 @@ class Frame:
         of_it, turns = self._motion.crafts[craft], self._motion.turns[craft]
         turn = self._between(turns)
         return Pose(self._between(of_it.position), turn / np.linalg.norm(turn))
+
+    def place(self, craft: int, ned: FloatArray) -> FloatArray:
+        """Return a place in the {n} of a craft, m, in the world."""
+        component = self._motion.crafts[craft].component
+        own = self.values([f"{component}.position.{axis}" for axis in "xyz"])
+        north, east, down = ned - own
+        return np.asarray(np.add(self.pose(craft).position, [east, north, -down]), dtype=np.float64)
 
     def value(self, signal: str) -> float | None:
         """Return a signal; None if it was not recorded as a number, or is none here."""

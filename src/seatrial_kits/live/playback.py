@@ -20,6 +20,7 @@ from .map_view import Map
 from .motion import Motion
 from .scene import Scene
 from .server import PageServer, look
+from .views import html_of_words
 
 FRAME_S = 1.0 / 30.0
 """Least wall time between two frames."""
@@ -89,6 +90,7 @@ class Playback:
             self._begin,
             marks=self._timeline(),
         )
+        self._words = gui.add_html("")
         self._button = gui.add_button("Pause")
         step = gui.add_button_group("step", ("-1 row", "+1 row", "to start"))
         self._speeds = gui.add_dropdown("times real time", _SPEEDS, initial_value="1")
@@ -168,6 +170,7 @@ class Playback:
             return
         self._panel_at = time.monotonic()
         self._slider.value = self.time
+        self._words.content = html_of_words(self._scene.views.words(frame))
         rows = slice(0, frame.row + 1)
         so_far = {name: column[rows] for name, column in self._run.signals.items()}
         is_over = frame.row == len(self._run.time) - 1

@@ -18,8 +18,9 @@ from .bodies import Bodies, extent
 from .bottom import bottom, obstacles
 from .forces import Forces
 from .meshes import mesh_of
-from .motion import Frame, Motion
-from .water import CELLS, Water
+from .motion import NED_IN_ENU, Frame, Motion
+from .views import Views
+from .water import CELLS, Water, followed
 
 WORLD = "/world"
 """Node of all that moves against the page's middle."""
@@ -27,7 +28,6 @@ TRACKS = ((217, 72, 54), (31, 111, 178), (31, 122, 77), (161, 92, 0), (123, 67, 
 _WATER, _BED, _SKY = (38, 110, 150), (150, 132, 98), (196, 221, 236)
 _DEEP = (34, 96, 124)
 _MARK, _WIND, _CURRENT = (240, 176, 32), (244, 246, 247), (64, 196, 200)
-_NED_IN_ENU = (0.0, math.sqrt(0.5), math.sqrt(0.5), 0.0)
 _LONGEST_TRACK = 2000
 """Points of a track."""
 _HEIGHT_OF_WIND = 10.0
@@ -67,6 +67,7 @@ class Scene:
             self._marks()
             self._rose()
             self._arrows()
+            self.views = Views(scene, motion, self._root, self.size, self._crest)
             self.forces = Forces(scene, motion, self._root, WORLD, self.size)
 
     def show(self, frame: Frame) -> None:
@@ -90,6 +91,7 @@ class Scene:
             self._sea.vertices = self._water.vertices(frame.time, east, north).astype(np.float32)
         self._compass.position = (east, north, self._crest)
         self._show_arrows(frame, east, north)
+        self.views.show(frame)
         self.forces.show(frame)
 
     @property
@@ -116,7 +118,7 @@ class Scene:
 
     def _surface(self, cells: int) -> None:
         sea = self._met.sea
-        waves = sea.waves() if sea is not None else None
+        waves = sea.waves() if sea is not None else followed(self.motion.run)
         reach = (200.0 if waves is None else 40.0) * self.size
         self._scene.set_background_image(_sky(self._is_under_water()), format="png")
         self._scene.configure_default_lights(cast_shadow=False)
@@ -181,7 +183,7 @@ class Scene:
             self._scene.add_mesh_simple(
                 f"{WORLD}/bed", bed.vertices, bed.faces, color=_BED, side="double"
             )
-        self._scene.add_frame(f"{WORLD}/n", show_axes=False, wxyz=_NED_IN_ENU)
+        self._scene.add_frame(f"{WORLD}/n", show_axes=False, wxyz=NED_IN_ENU)
         for number, (part, place, turn) in enumerate(obstacles(self.motion.run)):
             mesh = mesh_of(part)
             assert mesh is not None

@@ -5,9 +5,12 @@ from __future__ import annotations
 import math
 
 import numpy as np
+from seatrial.physics.environment.prescribed_deck import PrescribedDeck
 
+from seatrial.errors import InputError
 from seatrial.physics.sea.waves import Waves
 from seatrial.trial.criteria.expressions import FloatArray
+from seatrial.trial.records.run_folder import Run
 
 from .meshes import IntArray
 
@@ -15,6 +18,27 @@ CELLS = 56
 """Along each side of the surface that is drawn."""
 _PER_WAVE = 12
 """Cells along a wave of the mean length, by energy."""
+
+
+def followed(run: Run) -> Waves | None:
+    """Return the waves that a prescribed deck of a run follows, drawn again from its parameters.
+
+    Those of a file are not read: the record has its name alone.
+    """
+    for component in run.manifest["components"].values():
+        if component["fmu"] != "prescribed-deck":
+            continue
+        deck = PrescribedDeck("drawn")
+        given = {name: entry["value"] for name, entry in component["parameters"].items()}
+        try:
+            for name, value in given.items():
+                if name in deck.scalar_by_name and value is not None and name != "file":
+                    deck.set(name, value)
+            deck.start(0.0)
+        except InputError:  # of another version
+            return None
+        return None if given.get("file") else deck.sea()
+    return None
 
 
 class Water:

@@ -19,6 +19,7 @@ def test_nothing_is_known_before_a_sight():
     assert control.mean_down() is None
     np.testing.assert_array_equal(control.deck_at(1.0), [[0, 0, 1e3 - 2.45], [0] * 3, [0] * 3])
     assert (control.get("height"), control.get("error")) == (0.0, 0.0)
+    assert (control.get("time_ahead"), control.get("pad")) == (0.0, [0.0] * 3)
 
 
 def test_a_late_sight_counts_from_where_the_drone_was():
@@ -126,3 +127,31 @@ def test_what_is_older_than_the_estimate_changes_nothing():
     control.set("sight_valid", True)
     control.advance(1.0, H)
     np.testing.assert_array_equal(control.deck_at(1.0), before)
+
+
+def test_pad_and_deck_are_told_a_moment_ahead():
+    flight = Flight(wave_period=4.0)
+    omega = 1.15 * 2 * math.pi / 4.0  # that of which the deck is taken to oscillate
+    flight.pad = lambda t: np.array([1.0, -2.0, -0.3 - 0.2 * math.sin(omega * t)])
+    flight.pad_velocity = lambda t: np.array([0.0, 0.0, -0.2 * omega * math.cos(omega * t)])
+    flight.deck = at_rest(0.1, -0.15, 0.9)
+    control = flight.to(4.01)
+    now = 4.0  # orders of the instant before
+    assert control.get("time_ahead") == pytest.approx(now + 0.2)
+    assert control.get("pad") == pytest.approx(flight.pad(now), abs=0.01)
+    assert control.get("pad_ahead") == pytest.approx(flight.pad(now + 0.2), abs=0.02)
+    assert control.get("deck_ahead") == pytest.approx([0.1, -0.15, 0.9])
+
+
+@pytest.mark.slow
+def test_with_a_window_pad_and_deck_are_told_of_its_time():
+    flight = Flight(control="predictive", wave_period=2.8, settle=0.5)
+    omega = 2 * math.pi / 2.8
+    flight.pad = lambda t: np.array([0.0, 0.0, -0.2 - 0.05 * math.sin(omega * t)])
+    flight.pad_velocity = lambda t: np.array([0.0, 0.0, -0.05 * omega * math.cos(omega * t)])
+    control = flight.to(15.0)  # from 70 samples, 14 s, on
+    window = control.get("window")
+    assert window > 0.0
+    assert control.get("time_ahead") == window
+    assert control.get("pad_ahead") == pytest.approx(flight.pad(window), abs=0.02)
+    assert control.get("deck_ahead") == pytest.approx([0.0, 0.0, 0.0], abs=1e-3)

@@ -2,8 +2,8 @@
 
 import pytest
 
-from seatrial_kits.drone.rotor_escs import RotorEscs
 from seatrial.errors import InputError
+from seatrial_kits.drone.rotor_escs import RotorEscs
 
 
 def escs(**values):

@@ -40,7 +40,7 @@ def give_parameters(system: System, part: Part, profiles: Profiles) -> None:
         if entry.parameters.endswith(OWN):
             values = values.own(part.instance.variables, part.fmu, f"{where}.parameters")
         _give_parameter_set(part, values)
-        _give_shape(part, placed)
+        _give_shape(system, part, placed)
     if entry.profile is not None:
         profile, section = profiles.find(entry.profile, f"{where}.profile")
         _give_profile(part, section, profile, f"{where}.profile")
@@ -113,15 +113,26 @@ def _give_parameter_set(part: Part, values: ParameterSet) -> None:
     give_assumed(part)
 
 
-def _give_shape(part: Part, placed: Placed) -> None:
-    """Give the whole vehicle's shape to whoever shows it to others."""
-    for name in part.instance.variables.of_role("shape"):
-        reference, folder = placed.entry.parameters, placed.scope.read_from.path.parent
-        assert reference is not None
-        vehicle = load_vehicle(split_reference(reference, placed.entry.fmu)[0], folder)
-        parts = [part for table in vehicle.file.shape.values() for part in table]
-        written = json.dumps([each.model_dump(exclude_none=True) for each in parts])
+def _give_shape(system: System, part: Part, placed: Placed) -> None:
+    """Give the shape of all of the vehicle that the rig has to whoever shows it to others."""
+    names = list(part.instance.variables.of_role("shape"))
+    if not names:
+        return
+    vehicle, _ = _named(placed)
+    every = [p for p in system.rig.components.values() if p.entry.parameters]
+    has = {(of.read_from.path, table) for of, table in map(_named, every)}
+    shapes = vehicle.file.shape.items()
+    drawn = [s for table, shape in shapes if (vehicle.read_from.path, table) in has for s in shape]
+    written = json.dumps([each.model_dump(exclude_none=True) for each in drawn])
+    for name in names:
         part.given[name] = Given(written, f"shape of {vehicle.read_from.name}")
+
+
+def _named(placed: Placed) -> tuple[Vehicle, str]:
+    """Return the vehicle that gives a component parameters, and the table."""
+    assert placed.entry.parameters is not None
+    name, table = split_reference(placed.entry.parameters, placed.entry.fmu)
+    return load_vehicle(name, placed.scope.read_from.path.parent), table
 
 
 def _give_profile(part: Part, section: str, profile: Profile, where: str) -> None:
@@ -162,9 +173,8 @@ def _parameter_set(system: System, placed: Placed) -> ParameterSet:
     """Return the vehicle's values, of the system's variant; inside, if the vehicle has that."""
     entry, scope = placed.entry, placed.scope
     assert entry.parameters is not None
-    name, table = split_reference(entry.parameters, entry.fmu)
     try:
-        vehicle = load_vehicle(name, scope.read_from.path.parent)
+        vehicle, table = _named(placed)
         variant = _variant(system, scope, vehicle)
         _note_idle_rigs(system, vehicle)
         if entry.parameters.endswith("?") and table not in vehicle.tables:

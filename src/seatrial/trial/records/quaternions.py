@@ -32,6 +32,14 @@ def about(axis: Any, angle: Any) -> Array:
     return np.concatenate([np.cos(half), np.sin(half) * unit], -1)
 
 
+def turned(rotation: Any, vectors: Any) -> Array:
+    """Return vectors, the last axis over x, y and z, turned by one rotation."""
+    w, axis = float(rotation[0]), np.asarray(rotation[1:], dtype=float)
+    found = np.asarray(vectors, dtype=float)
+    aside = 2.0 * np.cross(axis, found)
+    return np.asarray(found + w * aside + np.cross(axis, aside))
+
+
 def of_euler(angles: Any) -> Array:
     """Return the rotation by yaw, then pitch, then roll, of (roll, pitch, yaw), rad.
 

@@ -97,6 +97,15 @@ def _views(views: dict[str, dict[str, str]]) -> dict[str, dict[str, str]]:
     return views
 
 
+_DRAWN = {
+    "deck": (("place", (".z",)), ("size", (".x", ".y"))),
+    "field-of-view": (("height", ("",)), ("angle", ("",)), ("reach", ("",))),
+    "landing-point": (("place", (".x", ".y")),),
+    "target": (("place", (".x", ".y", ".z")), ("radius", ("",))),
+}
+"""Parameters that views are drawn by, and their axes."""
+
+
 class _Component(_Entry):
     fmu: str
     sha256: str | None
@@ -122,8 +131,9 @@ class _Component(_Entry):
         return self.parameters[parameter].value if parameter in self.parameters else None
 
     def _viewed(self) -> Iterator[str]:
-        if ports := self.views.get("landing-point"):
-            yield from (f"{ports['place']}.{axis}" for axis in "xy")
+        for kind, wanted in _DRAWN.items():
+            if ports := self.views.get(kind):
+                yield from (f"{ports[port]}{axis}" for port, axes in wanted for axis in axes)
         if ports := self.views.get("waypoints"):
             count = self._value(ports["count"])
             if not isinstance(count, (int, float)) or not float(count).is_integer():

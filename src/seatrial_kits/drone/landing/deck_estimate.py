@@ -158,7 +158,7 @@ class DeckEstimate(Component):
         while self._grid * step <= self._at + 1e-9:
             back = self._grid * step - self._at
             down = self._x[0][2] + self._x[1][2] * back + self._x[2][2] * back * back / 2.0
-            north, east = self._tilt_at(self._grid * step)
+            north, east = self.slopes_at(self._grid * step)
             self._samples.append([-down, north, east])
             self._grid += 1
             if len(self._samples) > WINDOW:
@@ -168,7 +168,7 @@ class DeckEstimate(Component):
         """Return the time between two samples, s."""
         return float(max(self.wave_period, 0.1)) / PER_PERIOD
 
-    def _tilt_at(self, t: float) -> tuple[float, float]:
+    def slopes_at(self, t: float) -> tuple[float, float]:
         """Return the slopes to north and east at ``t``, by the last report and its rates."""
         phi, theta, psi, p, q, r = self._slopes
         back = min(max(t - self._slopes_at, -_FARTHEST), _FARTHEST)

@@ -17,6 +17,8 @@ from .tracking import Rows
 from .windows import Windows
 
 _EULER = ("phi", "theta", "psi")
+_AHEAD = 0.2
+"""How far ahead the deck's acceleration is fed forward, s."""
 OFF, TAKE_OFF, TRANSIT, TRACK, WAIT, DESCEND, LANDED, GO_AROUND, ABORT = range(9)
 MODES = (
     "off", "take-off", "transit", "track", "wait", "descend", "landed", "go-around", "abort"
@@ -71,10 +73,32 @@ class DeckLandingControl(Windows, DeckEstimate, Sampled):
     height = Output("m", "estimated height of the feet over the pad, 0 before it is seen")
     error = Output("m", "estimated horizontal error, 0 before the pad is seen")
     window = Output("s", "time of the touch-down that it has committed to, 0 for none")
+    pad = Output(
+        "m", "estimated place of the pad, {n}; 0 before it is seen and once landed", axes=NED
+    )
+    pad_ahead = Output("m", "expected place of the pad at time_ahead, {n}", axes=NED)
+    deck_ahead = Output("rad", "expected Euler angles of the deck at time_ahead", axes=_EULER)
+    time_ahead = Output("s", "time of pad_ahead: the window, or without one 0.2 s on; 0 as pad")
 
     terminals: ClassVar = {
         **DeckEstimate.terminals,
         "wanted": terminal("thrust", "attitude_wanted", "motors"),
+    }
+    views: ClassVar = {
+        "foreseen": {
+            "attitude": "attitude",
+            "now": "pad",
+            "place": "pad_ahead",
+            "turn": "deck_ahead",
+            "time": "time_ahead",
+            "aim": "window",
+        },
+        "state": {
+            "attitude": "attitude",
+            "value": "mode",
+            "first": "0",
+            "words": ", ".join(MODES),
+        },
     }
     exercised: ClassVar = {
         **DeckEstimate.exercised,
@@ -92,6 +116,7 @@ class DeckLandingControl(Windows, DeckEstimate, Sampled):
         self._around = 0.0
         self._out = 0
         self._held: list[Any] = [0.0, [0.0] * 3, False, 0.0, 0.0]
+        self._expected: list[Any] = [[0.0] * 3, [0.0] * 3, [0.0] * 3, 0.0]
         self.reset_estimate(t)
         self.reset_windows(t)
 
@@ -103,6 +128,8 @@ class DeckLandingControl(Windows, DeckEstimate, Sampled):
         self.thrust, self.attitude_wanted, self.motors = thrust, attitude, motors
         self.mode, self.go_arounds = float(self._mode), self._around
         self.height, self.error, self.window = height, error, max(self._target, 0.0)
+        pad, ahead, turned, when = self._expected
+        self.pad, self.pad_ahead, self.deck_ahead, self.time_ahead = pad, ahead, turned, when
 
     def update(self, t: float, k: int) -> None:
         """Take in what sensors have, go on to the state that follows, compute the orders."""
@@ -117,6 +144,7 @@ class DeckLandingControl(Windows, DeckEstimate, Sampled):
         off = math.hypot(*error)
         self._next_mode(t, height, off)
         shown = [height, off] if self._known else [0.0, 0.0]
+        self._expect(t, deck[0])
         if self._mode == LANDED:
             self._held = [0.0, [0.0, 0.0, self._heading()], False, *shown]
             return
@@ -188,6 +216,22 @@ class DeckLandingControl(Windows, DeckEstimate, Sampled):
         out = self.waypoint if self._out == 0 else (0.0, 0.0)
         return self._home[0] + out[0], self._home[1] + out[1]
 
+    def _expect(self, t: float, pad: Sequence[float]) -> None:
+        """Note the pad now, and pad and deck at the window, or without one a moment ahead."""
+        if not self._known or self._mode == LANDED:
+            self._expected = [[0.0] * 3, [0.0] * 3, [0.0] * 3, 0.0]
+            return
+        when, slopes = t + _AHEAD, self.slopes_at(t + _AHEAD)
+        place = self.deck_at(when)[0]
+        if self._target > t:
+            when, slopes = self._target, (self._foreseen[1], self._foreseen[2])
+            place = [pad[0], pad[1], -self._foreseen[0]]
+        psi = self.deck_heading()
+        c, s = math.cos(psi), math.sin(psi)
+        theta = math.atan(c * slopes[0] + s * slopes[1])
+        phi = -math.atan(c * slopes[1] - s * slopes[0])
+        self._expected = [[*pad], [*place], [phi, theta, psi], when]
+
     # ------------------------------------------------------------------ laws
 
     def _heading(self) -> float:
@@ -203,7 +247,7 @@ class DeckLandingControl(Windows, DeckEstimate, Sampled):
         if follows and self.lost_for(t) < 1.0:
             self._integral = laws.integrated(self._integral, error, self.period)
             slower = [deck[1][i] - own[i] for i in range(2)]
-            ahead = self.deck_at(t + 0.2)[2]
+            ahead = self.deck_at(t + _AHEAD)[2]
             self._hold = [*self.position, self._home[3]]
             return laws.below(error, slower, self._integral, ahead[:2], height)
         goal = self._goal() if self._mode == TRANSIT else self._hold[:2]

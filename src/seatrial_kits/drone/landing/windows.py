@@ -51,6 +51,7 @@ class Windows(DeckEstimate, Component):
         self._future: list[Sequence[float]] = []
         self._future_of = -1
         self._target = -1.0
+        self._foreseen = [0.0] * 3
 
     def forget_window(self) -> None:
         """Commit to nothing."""
@@ -71,13 +72,15 @@ class Windows(DeckEstimate, Component):
         if cheapest >= _GOOD + _RISE * max(0.0, waited - _PATIENCE):
             return False
         self._target = t + best
+        self._foreseen = self.predicted(self._target)
         return True
 
     def tilts_too_far(self, t: float) -> bool:
         """Return whether the deck is predicted to tilt by more than 9 degrees at touch-down."""
         if self._target <= t or len(self._samples) < _ENOUGH:
             return False
-        return _tilt(self.predicted(self._target)) > _TILT
+        self._foreseen = self.predicted(self._target)
+        return _tilt(self._foreseen) > _TILT
 
     def meets(self, t: float, down: float, velocity: float, left: float) -> float:
         """Return the acceleration downwards that meets the predicted deck at the window.
