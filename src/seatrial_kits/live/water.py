@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
-from seatrial.physics.environment.prescribed_deck import PrescribedDeck
 
 from seatrial.errors import InputError
+from seatrial.fmi.components.index import component_class
 from seatrial.physics.sea.waves import Waves
 from seatrial.trial.criteria.expressions import FloatArray
 from seatrial.trial.records.run_folder import Run
@@ -28,16 +29,18 @@ def followed(run: Run) -> Waves | None:
     for component in run.manifest["components"].values():
         if component["fmu"] != "prescribed-deck":
             continue
-        deck = PrescribedDeck("drawn")
         given = {name: entry["value"] for name, entry in component["parameters"].items()}
         try:
+            # Its kit may lack where only the record is.
+            deck: Any = component_class("prescribed-deck")("drawn")
             for name, value in given.items():
                 if name in deck.scalar_by_name and value is not None and name != "file":
                     deck.set(name, value)
             deck.start(0.0)
         except InputError:  # of another version
             return None
-        return None if given.get("file") else deck.sea()
+        followed: Waves | None = None if given.get("file") else deck.sea()
+        return followed
     return None
 
 

@@ -14,7 +14,7 @@ from seatrial.control.deck_landing.landing_control import DeckLandingControl
 from seatrial.devices.relative_pose import RelativePose
 from seatrial.physics.craft.multirotor import Multirotor
 from seatrial.physics.environment.prescribed_deck import PrescribedDeck
-from seatrial.physics.environment.touch_down import TouchDown
+from seatrial_kits.drone.touch_down import TouchDown
 
 from seatrial.trial.records.run_folder import Run
 from seatrial_kits.live.motion import Motion
