@@ -89,7 +89,7 @@ ELSEWHERE = {
     KITS / "live/watch-a-run.md",  # tests/kits/live: pages that wait for a browser
 }
 """Pages whose examples other tests run, or none."""
-MADE = {HOW_TO / "panel-codes.md": ("barge_capytaine.nc", "vehicles/barge.nc")}
+MADE = {KITS / "panels/panel-codes.md": ("barge_capytaine.nc", "vehicles/barge.nc")}
 """What a page makes with a tool that is not installed here: reference data, and its place."""
 LIVE = re.compile(r"^\$ seatrial run (\S+-mission)\n", re.M)
 """A trial for ground stations: it goes on while the rest of the page is run."""

@@ -15,7 +15,7 @@ from tests.kit import needs_kits
 HEAVY = ("casadi", "fmpy", "numpy", "pandas", "pint", "plotly", "pydantic", "scipy", "typer")
 
 
-@needs_kits("batch")
+@needs_kits("batch", "campaigns")
 def test_importing_brings_nothing_heavy() -> None:
     program = (
         "import json, sys, seatrial\nfrom seatrial import *\nprint(json.dumps(sorted(sys.modules)))"
@@ -26,7 +26,7 @@ def test_importing_brings_nothing_heavy() -> None:
     assert not [name for name in modules if name.split(".")[0] in HEAVY]
 
 
-@needs_kits("batch")
+@needs_kits("batch", "campaigns")
 def test_what_is_exported_is_there_and_documented() -> None:
     assert set(seatrial.__all__) <= set(dir(seatrial))
     for name in seatrial.__all__:

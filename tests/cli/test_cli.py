@@ -99,7 +99,11 @@ def test_a_criterion_that_fails_is_status_one(tmp_path: Path) -> None:
             "output and cannot be set",
         ),
         (["run", "hydrone-landing", "--engine", "warp"], "'fmu', 'direct' or 'native'"),
-        (["run", "hydrone-pads", "--set", "seeds=3"], "unknown key 'seeds'"),
+        pytest.param(
+            ["run", "hydrone-pads", "--set", "seeds=3"],
+            "unknown key 'seeds'",
+            marks=needs_kits("campaigns"),
+        ),
         (
             ["run", "hydrone-landing", "--real-time", "0"],
             "factor: Input should be greater than or equal to",

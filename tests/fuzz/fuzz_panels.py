@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from seatrial.errors import InputError
-from seatrial.physics.sea.panel_files import read_panels
+from seatrial_kits.panels.panel_files import read_panels
 
 
 def one(data: bytes) -> None:

@@ -9,11 +9,11 @@ import tempfile
 from functools import cache
 from pathlib import Path
 
-from seatrial.api.campaigns import CampaignResult
 from seatrial.api.results import load_result
 from seatrial.errors import InputError
 from seatrial.trial.records.compare import compare
 from seatrial.trial.reports.report import write_report
+from seatrial_kits.campaigns.api import CampaignResult
 from seatrial_kits.campaigns.results.campaign_report import write_campaign_report
 
 from ..trials.conftest import write_run_folder

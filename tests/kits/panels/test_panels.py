@@ -8,9 +8,9 @@ import pytest
 import xarray
 
 from seatrial.errors import InputError
-from seatrial.physics.sea.panel_files import read_panels
+from seatrial_kits.panels.panel_files import read_panels
+from tests.sea.references import REFERENCE, table
 
-from .references import REFERENCE, table
 from .test_memory import panels
 
 NETCDF, WAMIT = (REFERENCE / f"barge_capytaine.{ending}" for ending in ("nc", "1"))

@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.optimize import least_squares
 
-from ...errors import InputError
-from .numbers import Array, Complex
+from seatrial.errors import InputError
+from seatrial.physics.sea.numbers import Array, Complex
 
 MODES = 8
 """Modes of each of the two groups of motions."""

@@ -7,9 +7,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ...errors import InputError
-from .loads import Response, tabulated
-from .numbers import Array, Complex
+from seatrial.errors import InputError
+from seatrial.physics.sea.loads import Response, tabulated
+from seatrial.physics.sea.numbers import Array, Complex
 
 TURNED = np.array([1.0, -1.0, -1.0, 1.0, -1.0, -1.0])
 """Signs of six motions or forces between z up, y to port and z down, y to starboard."""

@@ -10,8 +10,9 @@ from typing import Any
 
 import numpy as np
 
-from ...errors import InputError, unknown
-from .numbers import Array
+from seatrial.errors import InputError, unknown
+from seatrial.physics.sea.numbers import Array
+
 from .panels import TURNED, PanelTables, all_round
 
 LARGEST = 256 * 2**20

@@ -11,20 +11,21 @@ from typing import Any, ClassVar
 import casadi as ca
 import numpy as np
 
-from ...errors import InputError
-from ...files.whole_file import stamp
-from ...model.component import Parameter
-from ...model.plant import State
-from ...model.ports import Output
-from ..sea.loads import Response
-from ..sea.memory import GROUPS, MODES, MOTIONS, Memory, memories
-from ..sea.panel_files import read_panels
-from ..sea.panels import PanelTables
-from .marine_craft import MarineCraft
-from .six_dof import six_dof_motion, velocity_through_water
-from .symbolic import rotation_matrix
-from .terms.context import Context
-from .terms.hydrodynamics import TERMS, WAVES, Term, read_terms
+from seatrial.errors import InputError
+from seatrial.files.whole_file import stamp
+from seatrial.model.component import Parameter
+from seatrial.model.plant import State
+from seatrial.model.ports import Output
+from seatrial.physics.craft.marine_craft import MarineCraft
+from seatrial.physics.craft.six_dof import six_dof_motion, velocity_through_water
+from seatrial.physics.craft.symbolic import rotation_matrix
+from seatrial.physics.craft.terms.context import Context
+from seatrial.physics.craft.terms.hydrodynamics import TERMS, WAVES, Term, read_terms
+from seatrial.physics.sea.loads import Response
+
+from .memory import GROUPS, MODES, MOTIONS, Memory, memories
+from .panel_files import read_panels
+from .panels import PanelTables
 
 RADIATION = "radiation"
 _MODES = [f"{group}{mode}" for group in ("x", "y") for mode in range(1, MODES + 1)]
@@ -39,7 +40,7 @@ _LONG_WAVES = 0.15
 
 
 def radiation(c: Context) -> Any:
-    """Return what radiated waves hold the hull back with: -B^T p of `sea.memory`, 0 at rest.
+    """Return what radiated waves hold the hull back with: -B^T p of `memory`, 0 at rest.
 
     Limits: zero speed, small motions about the mean water line.
     """
@@ -54,9 +55,9 @@ class SeakeepingCraft(MarineCraft):
 
         (M_RB + A_inf) nu_r' + integral of K(t - s) nu_r(s) ds = tau + the terms
 
-    ``panel_file`` is Capytaine's NetCDF or WAMIT's .1 with its .3 beside it (`sea.panel_files`).
+    ``panel_file`` is Capytaine's NetCDF or WAMIT's .1 with its .3 beside it (`panel_files`).
     From it come A_inf (``added_mass``, ``added_inertia``, ``added_coupling``, which the vehicle's
-    file leaves out), the memory K as states (`sea.memory`, term ``radiation``), fitted at the
+    file leaves out), the memory K as states (`memory`, term ``radiation``), fitted at the
     start (``radiation_missed`` says how nearly, motion by motion), and in waves the excitation with
     its diffraction (term ``wave-loads``), no strips.
     ``linear_damping_force`` and its like then hold what is not potential flow: viscous damping,

@@ -6,9 +6,8 @@ import numpy as np
 import pytest
 
 from seatrial.errors import InputError
-from seatrial.physics.sea.memory import GROUPS, memories
-
-from .references import table
+from seatrial_kits.panels.memory import GROUPS, memories
+from tests.sea.references import table
 
 
 def panels(body):

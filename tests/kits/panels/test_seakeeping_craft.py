@@ -9,13 +9,12 @@ import pytest
 
 from seatrial.errors import InputError
 from seatrial.physics.craft.marine_craft import MarineCraft
-from seatrial.physics.craft.seakeeping_craft import SeakeepingCraft
-from seatrial.physics.sea.panel_files import read_panels
+from seatrial_kits.panels.panel_files import read_panels
+from seatrial_kits.panels.seakeeping_craft import SeakeepingCraft
+from tests.craft.fleet import states
+from tests.craft.test_seaway import amplitude
 
-from .fleet import states
-from .test_seaway import amplitude
-
-TABLES = Path(__file__).parents[1] / "reference/barge_capytaine.nc"
+TABLES = Path(__file__).parents[2] / "reference/barge_capytaine.nc"
 MASS, ABOVE = 205.0, 0.06
 HELD = [2e4, 2e4, 0.0], [50.0, 0.0, 5e3]
 """Damping that holds surge, sway and yaw, and of roll, which radiates next to nothing."""

@@ -1,0 +1,1 @@
+"""Craft by the tables of panel codes, with the memory of their waves."""
