@@ -43,17 +43,24 @@ def folders(tmp_path_factory):
     return lambda: tmp_path_factory.mktemp("trip")
 
 
+def disordered(lines, times, data):
+    """Return lines of which some neighbours have changed places.
+
+    These are less than a second apart: further ones are a clock that was set.
+    """
+    found = list(lines)
+    for k in range(0, len(lines) - 1, 3):
+        if times[k + 1] - times[k] < 1.0 and data.draw(st.booleans()):
+            found[k], found[k + 1] = lines[k + 1], lines[k]
+    return found
+
+
 def record(folder, steps, data):
     """Return the record of a CSV log, imported; its rows are not in order."""
     times = np.cumsum(steps) / 100.0
     values = [[data.draw(NUMBERS) for _ in times] for _ in range(2)]
-    rows = list(zip(times.tolist(), *values, strict=True))
-    order = list(range(len(rows)))
-    # Neighbours less than a second apart change places: further ones are a clock that was set.
-    for k in range(0, len(rows) - 1, 3):
-        if times[k + 1] - times[k] < 1.0 and data.draw(st.booleans()):
-            order[k], order[k + 1] = order[k + 1], order[k]
-    lines = [",".join(map(repr, rows[k])) for k in order]
+    rows = zip(times.tolist(), *values, strict=True)
+    lines = disordered([",".join(map(repr, row)) for row in rows], times, data)
     (folder / "boat.csv").write_text("time,x [m],depth [m]\n" + "\n".join(lines) + "\n")
     found = imported(steady(read_log(folder / "boat.csv")), Wanted())
     (folder / "run").mkdir()
@@ -110,6 +117,7 @@ def test_a_record_in_each_format(folders, kind, steps, data):
         offset = run.time[0] if kind == "rosbag2" else 0.0
         np.testing.assert_allclose(found.time + offset, run.time, rtol=0.0, atol=1e-9)
         np.testing.assert_array_equal(found.values, run.signals[name])
+        assert_plays(path, found)
 
 
 def sent(player, port, length, h=0.05):
@@ -139,6 +147,9 @@ def test_a_bus_through_its_own_log(folders, steps, data):
     log.close()
     for name in ("can.log", "can.blf"):
         assert [each.frame for each in recorded_frames(folder / name, Counter())] == frames
+    lines = (folder / "can.log").read_text().splitlines(keepends=True)
+    (folder / "late.log").write_text("".join(disordered(lines, times, data)))
+    for name in ("can.log", "can.blf", "late.log"):
         player = CanPlayer("boat")
         player.set("file", str(folder / name))
         found = sent(player, "tx", times[-1] - times[0] + 0.1)
@@ -148,22 +159,20 @@ def test_a_bus_through_its_own_log(folders, steps, data):
 
 
 @settings(max_examples=15)
-@given(steps=STEPS, seed=st.integers(0, 1000))
-def test_sentences_through_their_text(folders, steps, seed):
+@given(steps=STEPS, seed=st.integers(0, 1000), data=st.data())
+def test_sentences_through_their_text(folders, steps, seed, data):
     folder, times = folders(), np.cumsum(steps) / 100.0
     numbers = random.Random(seed)
     headings = [f"{numbers.random() * 359.0:.1f}" for _ in times]
     lines = [str(pynmea2.HDT("HE", "HDT", (each, "T"))) for each in headings]
-    text = "".join(
-        f"{1.7e9 + t:.2f} {line}\n" for t, line in zip(times.tolist(), lines, strict=True)
-    )
-    (folder / "boat.nmea").write_text(text)
+    stamped = [f"{1.7e9 + t:.2f} {line}\n" for t, line in zip(times.tolist(), lines, strict=True)]
+    (folder / "boat.nmea").write_text("".join(disordered(stamped, times, data)))
     player = Nmea0183Player("boat")
     player.set("file", str(folder / "boat.nmea"))
     found = sent(player, "tx", times[-1] - times[0] + 0.1)
-    assert [data.decode().strip() for _, data in found] == lines
+    assert [sentence.decode().strip() for _, sentence in found] == lines
     np.testing.assert_allclose([when for when, _ in found], times - times[0], atol=1e-6)
-    log = read_log(folder / "boat.nmea").channels["HDT.headingT"]
+    log = steady(read_log(folder / "boat.nmea")).channels["HDT.headingT"]
     assert log.values.tolist() == [float(each) for each in headings]
 
 

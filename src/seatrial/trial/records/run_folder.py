@@ -228,10 +228,10 @@ def _read_signals(path: Path, texts: set[str]) -> tuple[FloatArray, dict[str, An
         for row in rows:
             for index, column in text.items():
                 column.append(row[index])
-    columns: dict[str, Any] = {
-        name: text[index] if index in text else np.concatenate(chunks[index])
-        for index, name in enumerate(header)
-    }
+    columns: dict[str, Any] = {}
+    for index, name in enumerate(header):
+        columns[name] = text[index] if index in text else np.concatenate(chunks[index])
+        chunks[index].clear()  # a long record is in memory once
     return columns.pop("time"), columns, rows.cut
 
 
