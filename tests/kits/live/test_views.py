@@ -10,13 +10,13 @@ from typing import Any
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
-from seatrial.control.deck_landing.landing_control import DeckLandingControl
-from seatrial.devices.relative_pose import RelativePose
-from seatrial.physics.craft.multirotor import Multirotor
-from seatrial.physics.environment.prescribed_deck import PrescribedDeck
-from seatrial_kits.drone.touch_down import TouchDown
 
 from seatrial.trial.records.run_folder import Run
+from seatrial_kits.drone.landing.landing_control import DeckLandingControl
+from seatrial_kits.drone.multirotor import Multirotor
+from seatrial_kits.drone.prescribed_deck import PrescribedDeck
+from seatrial_kits.drone.relative_pose import RelativePose
+from seatrial_kits.drone.touch_down import TouchDown
 from seatrial_kits.live.motion import Motion
 from seatrial_kits.live.views import Views
 from seatrial_kits.live.water import followed
