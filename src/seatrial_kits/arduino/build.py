@@ -11,6 +11,7 @@ from pathlib import Path
 from seatrial.errors import InputError
 
 from .dialect import narrowed
+from .letter_case import with_other_cases
 from .libraries import ASSEMBLY, SOURCES, compiled, files_of, read_source, write_source
 from .mcus import Mcu
 from .resources import TEXTS, cached, contents, laid_out
@@ -54,16 +55,8 @@ FAMILIES = {
     "esp32": Family(
         "esp32",
         (
-            "api",
-            "devices",
-            "network",
-            "pulses",
-            "queues",
-            "storage",
-            "tasks",
-            "tcp",
-            "timers",
-            "twai",
+            *("api", "asynctcp", "devices", "digests", "espnow", "network", "pulses"),
+            *("queues", "storage", "tasks", "tcp", "timers", "twai"),
         ),
         ("-m32", "-msse2", "-mfpmath=sse", "-funsigned-char", "-fasynchronous-unwind-tables"),
         ("-malign-double",),
@@ -91,6 +84,7 @@ def build_host(sketch: Sketch, mcu: Mcu) -> Path:
 
 def _host(sketch: Sketch, mcu: Mcu, file: Path, scratch: Path) -> None:
     family = FAMILIES[mcu.family]
+    sketch = with_other_cases(sketch, _includer(sketch, mcu), scratch / "cases")
     sketch = with_used_libraries(sketch, _includer(sketch, mcu), scratch / "whole.cpp")
     missing = missing_headers(sketch, _includer(sketch, mcu), scratch / "whole.cpp", mcu.family)
     refuse("host", sketch, [*missing, *(unsupported(sketch) if family.narrows else [])], mcu.family)

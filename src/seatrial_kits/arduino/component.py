@@ -311,7 +311,7 @@ class Arduino(ArduinoPorts):
                     )
             return None
         file = project_of(Path(self.sketch).expanduser()) if self.sketch else None
-        return Peripherals(self, file.parent / "data" if file else None)
+        return Peripherals(self, file.parent / "data" if file else None, self._parts)
 
     def _restart_peripherals(self) -> None:
         if self._peripherals:

@@ -12,6 +12,7 @@ from pathlib import Path
 from seatrial.errors import InputError
 
 from .build import include_folders, refuse, run, run_all, with_used_libraries
+from .letter_case import with_other_cases
 from .libraries import ASSEMBLY, SOURCES
 from .mcus import Mcu
 from .resources import TEXTS, cached, contents, laid_out
@@ -73,8 +74,9 @@ def build_firmware(sketch: Sketch, mcu: Mcu) -> Path:
         more = [*bundled, *(f / "utility" for f in bundled)]
         main = scratch / f"{sketch.name}.ino.cpp"
         includer = [f"-I{f}" for f in (*include_folders(sketch), *more)]
-        command = [*_compiler(main, mcu, sketch.flags), *includer]
-        used = with_used_libraries(sketch, command, main)
+        cased = with_other_cases(sketch, [*_compiler(main, mcu, ()), *includer], scratch / "cases")
+        command = [*_compiler(main, mcu, cased.flags), *includer]
+        used = with_used_libraries(cased, command, main)
         refuse("simavr", sketch, missing_headers(used, command, main, "avr"), "avr")
         includes = [*include_folders(used), *more]
         pins = laid_out() / "avr" / "pins.c"

@@ -30,12 +30,13 @@ LIMITS = {
 
 _ABSENT = {
     r"BluetoothSerial\.h|BLE\w*\.h|NimBLE\w*\.h|esp_bt\w*\.h|esp_gap\w*\.h": "Bluetooth",
-    r"esp_now\.h|esp_wifi\w*\.h|esp_netif\w*\.h|WiFiMulti\.h": "the radio below WiFi.h",
-    r"ESPAsync\w+\.h|AsyncTCP\.h|AsyncUDP\.h|WebServer\.h|DNSServer\.h|HTTP\w+\.h|lwip/.*": "TCP",
+    r"esp_netif\w*\.h|esp_event\.h|WiFiMulti\.h": "the radio below WiFi.h and esp_now.h",
+    r"WebServer\.h|DNSServer\.h|HTTP\w+\.h": "web servers and clients of its own",
+    r"AsyncUDP\.h|lwip/.*": "the network below WiFi.h and AsyncTCP.h",
     r"WiFiClientSecure\.h|mbedtls/.*": "encryption",
     r"esp_camera\.h|camera_\w+\.h|img_converters\.h": "the camera",
     r"esp_sleep\.h|esp_pm\.h|ulp\w*\.h": "sleep",
-    r"esp_ota_ops\.h|ArduinoOTA\.h|Update\.h|ESPmDNS\.h": "updates and names over the network",
+    r"esp_ota_ops\.h|ArduinoOTA\.h|ESPmDNS\.h": "updates and names over the network",
     r"SD_MMC\.h|FFat\.h|sd_diskio\.h": "file systems besides LittleFS and SPIFFS",
     r"soc/.*|rom/.*|hal/.*|xtensa/.*|esp32/.*": "registers",
     r"driver/(?:mcpwm|pcnt|rmt|i2s|i2c|uart|spi_\w+|dac|touch_pad)\w*\.h": "ESP-IDF's own drivers",

@@ -16,6 +16,8 @@ from .core import avr as core_avr
 from .core import util as core_util
 from .esp32 import driver as esp32_driver
 from .esp32 import freertos as esp32_freertos
+from .esp32 import libb64 as esp32_libb64
+from .esp32 import rom as esp32_rom
 from .esp32 import soc as esp32_soc
 
 _FOLDERS = {
@@ -26,6 +28,8 @@ _FOLDERS = {
     "esp32": esp32,
     "esp32/driver": esp32_driver,
     "esp32/freertos": esp32_freertos,
+    "esp32/libb64": esp32_libb64,
+    "esp32/rom": esp32_rom,
     "esp32/soc": esp32_soc,
     "machine": machine,
     "shared": shared,

@@ -81,6 +81,8 @@ def find_sketch(
     if joined and main != named and named.is_file():
         raise InputError(f"{path} is a tab of the sketch {named}: give that, or its folder")
     more = sorted(f for f in folder.iterdir() if f.suffix in _INOS and f.stem != main.stem)
+    if main.stem != folder.name:  # of a folder of sketches: the others are no tabs of this one
+        more = [f for f in more if not _has_setup(f)]
     tabs = (main, *more) if joined else ()
     sources = [f for f in sorted(folder.iterdir()) if f.suffix in SOURCES]
     if (folder / "src").is_dir():
@@ -149,10 +151,19 @@ def read_flags(text: str) -> tuple[str, ...]:
 
 
 def _main(folder: Path) -> Path | None:
-    """Return the ``.ino`` of a folder's own name, or the only one there."""
+    """Return the ``.ino`` of a folder's own name, or the only one there, or with a ``setup()``.
+
+    A clone has the name of its repository, which is often another than the sketch's.
+    """
     found = sorted(f for f in folder.iterdir() if f.suffix in _INOS) if folder.is_dir() else []
     named = [f for f in found if f.stem == folder.name]
-    return named[0] if named else found[0] if len(found) == 1 else None
+    begin = named or (found if len(found) == 1 else [f for f in found if _has_setup(f)])
+    return begin[0] if len(begin) == 1 else None
+
+
+def _has_setup(file: Path) -> bool:
+    words = [token.text for token in tokens(read_source(file)) if token.kind != "space"]
+    return any(words[at : at + 3] == ["void", "setup", "("] for at in range(len(words)))
 
 
 _LINE = re.compile(r"""\s*#\s*line\s+(?P<number>\d+)(?:\s+(?P<name>".*"))?""")

@@ -169,7 +169,7 @@ def test_a_project_of_platformio_runs_as_it_is(tmp_path, board, mcu):
 
 def test_check_knows_the_board_of_arduino_cli_and_all_that_is_missing(tmp_path):
     need("host for ESP32")
-    source = "#include <BluetoothSerial.h>\n#include <esp_now.h>\n#include <Absent.h>\nvoid setup() {}\nvoid loop() {}\n"
+    source = "#include <BluetoothSerial.h>\n#include <esp_event.h>\n#include <Absent.h>\nvoid setup() {}\nvoid loop() {}\n"
     sketch = write_sketch(tmp_path, source, sketch_dot_yaml="default_fqbn: esp32:esp32:esp32\n")
     done = seatrial("sketch", "check", str(sketch), cwd=tmp_path)
     assert done.returncode == 2
@@ -179,7 +179,8 @@ def test_check_knows_the_board_of_arduino_cli_and_all_that_is_missing(tmp_path):
         in done.stderr
     )
     assert (
-        "one.ino:2: <esp_now.h>: the back end 'host' of this board has not the radio" in done.stderr
+        "one.ino:2: <esp_event.h>: the back end 'host' of this board has not the radio"
+        in done.stderr
     )
     assert "one.ino:3: the library of <Absent.h> is not there" in done.stderr
 

@@ -1,5 +1,7 @@
 """TCP of an ESP32's WiFi, by the clients and servers of Python's standard library."""
 
+import base64
+import hashlib
 import http.client
 import http.server
 import socket
@@ -49,6 +51,39 @@ void setup() {
   while (client.connected() && !client.available()) delay(1);
   Serial.print(client.readStringUntil('\\r')); client.find("\\r\\n\\r\\n"); Serial.print(client.readString());
   Serial.print(client.connected()); Serial.print(client.connect("127.77.0.9", 1234));
+}
+void loop() {}
+"""
+
+
+ASYNC = """
+#include <WiFi.h>
+#include <AsyncTCP.h>
+AsyncServer server(7778);
+int acknowledged, polls, ends;
+void setup() {
+  Serial.begin(115200); WiFi.begin("net");
+  server.onClient([](void *, AsyncClient *client) {
+    client->onData([](void *, AsyncClient *one, void *data, size_t size) { one->write((char *)data, size); });
+    client->onAck([](void *, AsyncClient *, size_t size, uint32_t) { acknowledged += size; });
+    client->onPoll([](void *, AsyncClient *) { polls++; });
+    client->onDisconnect([](void *, AsyncClient *one) { ends++; delete one; });
+  }, nullptr);
+  server.begin();
+}
+void loop() { delay(100); Serial.printf("%d %d %d\\n", acknowledged, polls, ends); }
+"""
+DIGESTS = """
+#include <MD5Builder.h>
+#include <libb64/cencode.h>
+void setup() {
+  Serial.begin(115200);
+  for (int size : {0, 3, 55, 56, 64, 200}) {
+    std::string text((size_t)size, 'x'); MD5Builder md5; char coded[300];
+    md5.begin(); md5.add(text.c_str()); md5.calculate();
+    base64_encode_chars(text.data(), size, coded);
+    Serial.print(md5.toString() + coded + "\\n");
+  }
 }
 void loop() {}
 """
@@ -126,3 +161,27 @@ def test_a_port_that_is_taken_ends_the_run(tmp_path):
         bench = running(tmp_path, ECHO, network="127.77.0.6")
         with bench, pytest.raises(SimulationError, match=r"TCP port 7777 at 127\.77\.0\.6"):
             bench.run(0.1)
+
+
+def test_handlers_of_asynctcp_are_called(tmp_path):
+    data = b"0123456789" * 50
+    with running(tmp_path, ASYNC, network="127.77.0.7") as bench:
+        bench.run(0.1)
+        with stepping(bench), socket.create_connection(("127.77.0.7", 7778), 20) as one:
+            one.sendall(data)
+            back = b""
+            while len(back) < len(data):
+                back += one.recv(4096)
+            assert back == data
+        bench.run(1.0)
+        acknowledged, polls, ends = map(int, bench.sent[0].splitlines()[-1].split())
+        assert (acknowledged, ends) == (len(data), 1)
+        assert polls >= 0
+
+
+def test_digests_are_those_of_hashlib_and_base64(tmp_path):
+    with running(tmp_path, DIGESTS) as bench:
+        said = bench.run(0.3).decode().splitlines()
+    for size, line in zip((0, 3, 55, 56, 64, 200), said, strict=True):
+        text = b"x" * size
+        assert line == hashlib.md5(text).hexdigest() + base64.b64encode(text).decode()

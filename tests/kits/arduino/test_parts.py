@@ -5,6 +5,7 @@ import math
 import pytest
 
 from seatrial.errors import InputError, SimulationError
+from seatrial_kits.arduino.parts.ma3 import Ma3
 
 from .bench import Bench, write_sketch
 
@@ -290,3 +291,26 @@ void loop() {
             read = [float(each) for each in bench.run(0.2).split()[1:-1]]
             assert read == pytest.approx([position] * len(read), rel=0.01)
             assert len(read) > 3
+
+
+@pytest.mark.parametrize(
+    ("number", "angle", "width", "period"),
+    [(1, 0.0, 2049, 4098), (10, 0.0, 513, 1026), (10, -math.pi, 1, 1026), (10, 3.136, 1025, 1026)],
+)
+def test_a_pwm_vane_has_the_pulses_of_its_bits(number, angle, width, period):
+    """By the data sheet of MA3-P12 and MA3-P10."""
+    pulses = []
+
+    class Kept(Ma3):
+        def pulse(self, pin, width, period):
+            pulses.append((pin, round(width * 1e6), round(period * 1e6)))
+
+    part = Kept((7,), number)
+    part.inputs = {"wind_angle": angle}
+    part.measure()
+    assert pulses == [(7, width, period)]
+
+
+def test_a_pwm_vane_has_12_or_10_bits():
+    with pytest.raises(InputError, match="ma3 8: 12 or 10 bits"):
+        Ma3((7,), 8)

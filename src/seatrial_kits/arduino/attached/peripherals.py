@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+from seatrial.model.component import NS
+
 from ..board import MESSAGE, Event, Inputs
 from ..mcus import CLOCK
+from ..part import Part
+from ..parts import espnow
 from ..ports import ArduinoPorts
 from . import can_port, network
 from .flash import Flash
@@ -15,15 +20,18 @@ from .flash import Flash
 class Peripherals:
     """They of the component ``board``; ``data`` is a folder that the flash begins with besides.
 
+    ``parts`` are the board's; those of ESP-NOW have its frames.
+
     Raises InputError for a folder that cannot be read and a network that is not allowed.
     """
 
-    def __init__(self, board: ArduinoPorts, data: Path | None) -> None:
+    def __init__(self, board: ArduinoPorts, data: Path | None, parts: Sequence[Part]) -> None:
         self._board = board
         self._memory: dict[str, Any] = {}
         self._can = can_port.CanPort(self._memory)
         self._network = network.Network(board.name, board.network)
         self._flash = Flash(board.flash, data)
+        self._radios = [part for part in parts if isinstance(part, espnow.EspNow)]
         self._told = False
         self._message: tuple[int, int, int] | None = None
         self._bytes = bytearray()
@@ -56,8 +64,11 @@ class Peripherals:
         whole, self._message = bytes(self._bytes[:size]), None
         if channel == can_port.CHANNEL:
             self._can.send(time_ns, whole)
-        else:
+        elif channel == network.CHANNEL:
             self._network.send(whole)
+        else:
+            for radio in self._radios:
+                radio.sent((time_ns - begun_ns) / NS, whole)
 
     def flush(self) -> None:
         """Publish at the end of a step."""

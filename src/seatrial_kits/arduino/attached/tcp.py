@@ -1,4 +1,4 @@
-"""TCP of a board's WiFi: servers that it opens, and connections, as sockets of this machine."""
+"""TCP of a board's WiFi: its servers and connections are sockets of this machine."""
 
 from __future__ import annotations
 

@@ -153,6 +153,7 @@ void serialEvent2() __attribute__((weak));
 
 #include "Stream.h"
 #include "WString.h"
+inline const String emptyString;
 #include "IPAddress.h"
 #include "Client.h"
 #include "Server.h"
@@ -160,5 +161,7 @@ void serialEvent2() __attribute__((weak));
 #include "HardwareSerial.h"
 #include "Esp.h"
 #include "esp32-hal.h"
+
+#define __unused __attribute__((unused)) /* of newlib; a computer's headers have members of this name */
 
 #endif

@@ -28,6 +28,7 @@ public:
     bool seek(uint32_t to, SeekMode mode = SeekSet);
     size_t position() const;
     size_t size() const;
+    time_t getLastWrite() const { return 0; } /* the calendar is not set */
     void close() { open_.reset(); }
     operator bool() const { return open_ != nullptr; }
     const char *name() const;

@@ -4,6 +4,8 @@
  * its millisecond is over. Tasks of the two cores take turns as if they ran side by side; on one core the
  * highest priority goes first. A task without affinity counts as one of core 0, where less runs.
  */
+#include <errno.h>
+#include <pthread.h>
 #include <string.h>
 #include <sys/mman.h>
 #include <ucontext.h>
@@ -306,6 +308,17 @@ BaseType_t xTaskNotifyWait(uint32_t clear_before, uint32_t clear_after, uint32_t
         one->notice &= ~clear_after;
     one->noticed = false;
     return came;
+}
+
+/* Tasks are of one thread: std::mutex lets others go on while one of them has it. */
+extern "C" int pthread_mutex_lock(pthread_mutex_t *mutex)
+{
+    while (int refused = pthread_mutex_trylock(mutex)) {
+        if (refused != EBUSY)
+            return refused;
+        taskYIELD();
+    }
+    return 0;
 }
 
 /* Interrupts wait meanwhile, and so does every other task. */

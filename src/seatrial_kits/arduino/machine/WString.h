@@ -37,7 +37,8 @@ public:
     bool isEmpty() const { return text_.empty(); }
     void clear() { text_.clear(); }
     bool concat(const char *text, unsigned size) { text_.append(text, size); return true; }
-    operator bool() const { return true; }
+    typedef void (String::*Truth)() const; /* unlike bool, no number */
+    operator Truth() const { return &String::there; }
 #endif
     bool reserve(unsigned size) { text_.reserve(size); return true; }
     unsigned length() const { return (unsigned)text_.size(); }
@@ -92,6 +93,7 @@ public:
     void getBytes(unsigned char *to, unsigned size, unsigned from = 0) const { toCharArray((char *)to, size, from); }
 
 private:
+    void there() const {}
     static sketch_int place(size_t at) { return at == std::string::npos ? -1 : (sketch_int)at; }
     std::string text_;
 };

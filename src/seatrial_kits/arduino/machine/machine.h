@@ -63,7 +63,7 @@ char *main_stack();
 const char *folder(); /* of the files in its flash; '' if it has none */
 void on_stack(char *begin, size_t size);
 /* Messages of a device to and from the process that steps the board. */
-enum { CAN_MESSAGES, NETWORK_MESSAGES };
+enum { CAN_MESSAGES, NETWORK_MESSAGES, RADIO_MESSAGES };
 typedef void (*Received)(const uint8_t *data, size_t size);
 void receive_messages(int channel, Received handler);
 void send_message(int channel, const void *data, size_t size);

@@ -2,7 +2,7 @@
 #ifndef MESSAGES_H
 #define MESSAGES_H
 
-constexpr int CHANNELS = 2;
+constexpr int CHANNELS = 3;
 
 Received on_message[CHANNELS];
 uint8_t message_channel, message[2048];

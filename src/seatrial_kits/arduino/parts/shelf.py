@@ -13,6 +13,7 @@ from .as5600 import As5600
 from .bno055 import Bno055
 from .cmps12 import Cmps12
 from .ds18b20 import Ds18b20
+from .espnow import EspNow
 from .hcsr04 import HcSr04
 from .hmc5883l import Hmc5883l
 from .lsm303 import Lsm303Accelerometer, Lsm303Magnetometer
@@ -34,6 +35,7 @@ SHELF: dict[str, type[Part]] = {
     "bno055": Bno055,
     "cmps12": Cmps12,
     "ds18b20": Ds18b20,
+    "espnow": EspNow,
     "hcsr04": HcSr04,
     "hmc5883l": Hmc5883l,
     "lsm303_accelerometer": Lsm303Accelerometer,

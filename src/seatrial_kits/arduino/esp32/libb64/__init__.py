@@ -1,0 +1,3 @@
+"""Base64 as libraries include it."""
+
+DATA_FILES = ("cencode.h",)

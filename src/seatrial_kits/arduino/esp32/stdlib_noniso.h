@@ -1,0 +1,2 @@
+/* Where the board has what libc.h declares. */
+#include "libc.h"
