@@ -140,7 +140,7 @@ class _Foreseen:
             side="double",
         )
         _lines(scene, f"{path}/deck/edge", corners, _AHEAD, 2.5)
-        self._label = scene.add_label(f"{path}/deck/time", "", position=tuple(corners[1]))
+        self._label = scene.add_label(f"{path}/deck/time", "deck", position=tuple(corners[1]))
 
     def show(self, frame: Frame) -> None:
         when = frame.value(self._ports["time"])
@@ -166,7 +166,7 @@ class _State:
             (f"{entry['name']}.{ports['value']}", ports["first"], ports["words"].split(","))
             for entry, ports in entries
         ]
-        self._label = scene.add_label(path, "", position=(0.0, 0.0, -0.35 * size))
+        self._label = scene.add_label(path, "state", position=(0.0, 0.0, -0.35 * size))
 
     def show(self, frame: Frame) -> None:
         text = self.text(frame)
