@@ -10,6 +10,7 @@ from seatrial_kits.drone.landing import laws, prediction, tracking
 from seatrial_kits.drone.landing.landing_control import DeckLandingControl
 from seatrial_kits.drone.multirotor_attitude import MultirotorAttitude
 from seatrial_kits.drone.wave_follower import drawn, moved, period_of
+from tests.kit import needs_kits
 
 HERE = Path(__file__).parents[2] / "reference" / "drone"
 SIZES = {"hydrone": ((1.168, 0.517, 0.043), 0.2), "wamv": ((4.05, 2.44, 0.15), 1.0)}
@@ -241,3 +242,12 @@ def test_motors_off_are_off_and_yaw_gives_way_at_a_limit():
     loop.set("motors", True)
     loop.advance(0.0, 0.004)
     assert loop.get("command") == pytest.approx([785.7987745754486] * 4, rel=1e-6)
+
+
+@pytest.mark.slow
+@needs_kits("native")
+@pytest.mark.parametrize("control", ["naive", "relative", "predictive"])
+def test_each_law_has_c(control):
+    from seatrial_kits.native.carriers import why_python
+
+    assert not why_python(DeckLandingControl, {"control": control})

@@ -97,7 +97,7 @@ class Windows(DeckEstimate, Component):
         """Return heave upwards, m, and slopes to north and east at ``t``."""
         newest, step = self._grid - 1, self.sample_step()
         steps = t / step - newest
-        if newest != self._future_of:
+        if len(self._samples) >= _ENOUGH and newest != self._future_of:
             self._future_of = newest
             self._future = []
             if self.predictor == "autoregressive":
