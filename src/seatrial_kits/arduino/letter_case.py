@@ -20,7 +20,8 @@ def with_other_cases(sketch: Sketch, command: list[str], place: Path) -> Sketch:
     folders = [Path(each[2:]) for each in command if each.startswith("-I")]
     names = [f.name for each in folders if each.is_dir() for f in each.iterdir()]
     by_case = {name.casefold(): name for name in (*names, *_OF_C) if name.endswith((".h", ".hpp"))}
-    known, made = {*names, *_OF_C}, set()
+    known = {*names, *_OF_C}
+    made: set[str] = set()
     for file in sketch.files():
         if file.suffix in ASSEMBLY:
             continue
