@@ -39,8 +39,8 @@ def test_in_an_empty_folder_the_shipped_files_are_found(kind: str) -> None:
     files = [path for folder in provided_folders(kind) for path in folder.glob("*.toml")]
     on_disk = {path.stem: path for path in files}
     if kind == "vehicles":
-        folders = shipped_folder("harness") / "vehicles"
-        on_disk |= {path.parent.name: path for path in folders.glob("*/vehicle.toml")}
+        for folder in provided_folders("harness/vehicles"):
+            on_disk |= {path.parent.name: path for path in folder.glob("*/vehicle.toml")}
     assert on_disk
     assert available(kind) == on_disk
     assert {name: find_file(kind, name) for name in on_disk} == on_disk

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from seatrial.errors import InputError
-from seatrial.shipped import available, available_places, shipped_folder
+from seatrial.shipped import available, available_places, provided_folders, shipped_folder
 from seatrial.system.assembling.assembly import assemble
 from seatrial.system.files import find_file, find_place
 from seatrial.system.flattening import load_rig
@@ -131,8 +131,9 @@ def test_names_of_a_folder_are_listed_beside_those_of_files(boat, write) -> None
 
 
 def test_every_shipped_vehicle_is_a_folder_of_at_most_two_files() -> None:
-    folders = sorted(SHIPPED.iterdir())
-    assert [folder.name for folder in folders] == sorted(available("vehicles"))
+    provided = provided_folders("harness/vehicles")
+    folders = [folder for each in provided for folder in each.iterdir()]
+    assert sorted(folder.name for folder in folders) == sorted(available("vehicles"))
     for folder in folders:
         files = {path.name for path in folder.iterdir()}
         assert "vehicle.toml" in files

@@ -157,7 +157,9 @@ def _main(folder: Path) -> Path | None:
     """
     found = sorted(f for f in folder.iterdir() if f.suffix in _INOS) if folder.is_dir() else []
     named = [f for f in found if f.stem == folder.name]
-    begin = named or (found if len(found) == 1 else [f for f in found if _has_setup(f)])
+    if named:
+        return named[0]  # NAME.ino before a NAME.pde, the same for older tools
+    begin = found if len(found) == 1 else [f for f in found if _has_setup(f)]
     return begin[0] if len(begin) == 1 else None
 
 
