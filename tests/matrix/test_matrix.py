@@ -29,7 +29,7 @@ pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="/proc, terminal
 EXCUSED = {
     reasons.RAW: 7,
     reasons.NO_CONNECTION: 5,
-    reasons.COME_AND_GO: 10,
+    reasons.COME_AND_GO: 11,
     reasons.NO_PORT: 6,
     reasons.ALONE: 2,
     reasons.NAMESPACE: 7,
