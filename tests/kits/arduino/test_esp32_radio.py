@@ -12,13 +12,13 @@ REMOTE = """
 #include <WiFi.h>
 #include <esp_now.h>
 uint8_t boat[] = {0x24, 0x6F, 0x28, 1, 2, 3};
-int sent, heard;
+int sent, received;
 void on_sent(const uint8_t *, esp_now_send_status_t status) { sent += status == ESP_NOW_SEND_SUCCESS; }
-void on_heard(const uint8_t *mac, const uint8_t *data, int size) { heard = data[0]; Serial.printf("%02X%02X %d %d;", mac[0], mac[5], size, heard); }
+void on_received(const uint8_t *mac, const uint8_t *data, int size) { received = data[0]; Serial.printf("%02X%02X %d %d;", mac[0], mac[5], size, received); }
 void setup() {
   Serial.begin(115200); WiFi.mode(WIFI_STA);
   Serial.print(esp_now_send(boat, boat, 1) == ESP_ERR_ESPNOW_NOT_INIT);
-  esp_now_init(); esp_now_register_send_cb(on_sent); esp_now_register_recv_cb(on_heard);
+  esp_now_init(); esp_now_register_send_cb(on_sent); esp_now_register_recv_cb(on_received);
   Serial.print(esp_now_send(boat, boat, 1) == ESP_ERR_ESPNOW_NOT_FOUND);
   esp_now_peer_info_t peer = {}; memcpy(peer.peer_addr, boat, 6);
   Serial.print(esp_now_add_peer(&peer)); Serial.print(esp_now_add_peer(&peer) == ESP_ERR_ESPNOW_EXIST);
@@ -33,7 +33,7 @@ BOAT = """
 #include <WiFi.h>
 #include <esp_now.h>
 #include <esp_wifi.h>
-void on_heard(const esp_now_recv_info_t *info, const uint8_t *data, int size) {
+void on_received(const esp_now_recv_info_t *info, const uint8_t *data, int size) {
   String text((const char *)data, size); Serial.print(text); Serial.print(' ');
   uint8_t volts = 74;
   if (!esp_now_is_peer_exist(info->src_addr)) {
@@ -44,7 +44,7 @@ void on_heard(const esp_now_recv_info_t *info, const uint8_t *data, int size) {
 void setup() {
   Serial.begin(115200); WiFi.mode(WIFI_STA);
   esp_wifi_set_channel(1, WIFI_SECOND_CHAN_NONE);
-  esp_now_init(); esp_now_register_recv_cb(on_heard);
+  esp_now_init(); esp_now_register_recv_cb(on_received);
 }
 void loop() {}
 """
