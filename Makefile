@@ -127,7 +127,8 @@ release: docs $(TOOLS)/.installed
 	$(BIN)/python -m pip freeze --exclude-editable > $(RELEASE)/tested.txt
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --dry-run --ignore-installed --no-deps \
 		--report $(RELEASE)/report.json --requirement $(RELEASE)/tested.txt
-	$(BIN)/python -c 'import json, sys; [print(one["metadata"]["name"], "==", one["metadata"]["version"], \
+	$(BIN)/python -c 'import json, sys; print("# pip install --require-hashes --no-deps -r seatrial.lock"); \
+		[print(one["metadata"]["name"], "==", one["metadata"]["version"], \
 		" --hash=sha256:", one["download_info"]["archive_info"]["hashes"]["sha256"], sep="") \
 		for one in json.load(sys.stdin)["install"]]' < $(RELEASE)/report.json > $(RELEASE)/seatrial.lock
 	$(TOOLS)/bin/cyclonedx-py environment --pyproject pyproject.toml --mc-type library --output-reproducible \
