@@ -44,6 +44,8 @@ _POINTS = 55_000
 _FEWEST_POINTS = 500
 _MOST_DRAWN = 500
 """Signals of one component that are drawn below "Other signals"."""
+_MOST_COLUMNS = 3
+"""Panels side by side: narrower ones do not hold their titles."""
 
 
 @dataclass(frozen=True)
@@ -175,7 +177,9 @@ def _sections(run: Run) -> Iterator[Section]:
     craft = {port.component for port in numeric if port.name in _MOTION}
     motion = [p for p in numeric if p.name in _MOTION]
     units = {p: run.units[p.signals[0]] for p in numeric}
-    speeds = [p for p in numeric if p.component in craft and units[p] in ("m/s", "rad/s")]
+    # A vector has three axes at most: the speeds of four rotors are no motion of the craft.
+    moved = [p for p in numeric if p.component in craft and len(p.signals) <= 3]
+    speeds = [p for p in moved if units[p] in ("m/s", "rad/s")]
     whole = set(numeric)
     forces = _first([p for p in numeric if units[p] in _FORCE_UNITS], _MOST_DRAWN)
     forces = [p for p in forces if p in whole]
@@ -342,7 +346,10 @@ def _alike_craft(run: Run, ports: Iterable[Port]) -> list[list[str]]:
 
 def _over_time(run: Run, columns: Sequence[Sequence[Panel]]) -> str:
     points = points_of_a_line(len(run.signals))
-    return time_figure(run.time, columns, events_of(run), points).json()
+    placed = [list(column) for column in columns[:_MOST_COLUMNS]]
+    for column in columns[_MOST_COLUMNS:]:
+        min(placed, key=len).extend(column)
+    return time_figure(run.time, placed, events_of(run), points).json()
 
 
 def points_of_a_line(signals: int) -> int:
