@@ -34,7 +34,7 @@ $(INSTALLED): pyproject.toml
 demo: $(INSTALLED)
 	@echo "== a drone lands on the aft port corner of a catamaran that holds its station"
 	@$(BIN)/seatrial run hydrone-landing
-	@echo "== all five landing points, landing and take-off"
+	@echo "== all five landing points, landing and take-off: six cases off the centre line FAIL, as in the published work"
 	@$(BIN)/seatrial run hydrone-pads || test $$? -eq 1
 	@echo "Open the two reports in a browser: each plays its run. The landing with time line, map and charts:"
 	@run=$$(ls -td runs/hydrone-landing-* | head -n 1); echo "$$run/report.html"; \
