@@ -4,13 +4,12 @@ import math
 
 import pytest
 
-from seatrial.devices.ctd import Ctd
 from seatrial.devices.leak import Leak
-from seatrial.devices.seawater import CELSIUS, conductivity, salinity, sound_speed
 from seatrial.errors import InputError
-
-from .ideal import ideal
-from .running import started
+from seatrial_kits.underwater.ctd import Ctd
+from seatrial_kits.underwater.seawater import CELSIUS, conductivity, salinity, sound_speed
+from tests.devices.ideal import ideal
+from tests.devices.running import started
 
 # GSW 3.6.23 (TEOS-10): C_from_SP in mS/cm; sound_speed at 30 W, 30 N; z_from_p at 45 N.
 GSW = [

@@ -8,13 +8,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
-from seatrial.devices.dvl import Dvl
-from seatrial.devices.echo_sounder import Altimeter, EchoSounder
-from seatrial.devices.scanning_sonar import BINS, ScanningSonar
 from seatrial.errors import InputError
-
-from .ideal import ideal
-from .running import run, started
+from seatrial_kits.underwater.dvl import Dvl
+from seatrial_kits.underwater.echo_sounder import Altimeter, EchoSounder
+from seatrial_kits.underwater.scanning_sonar import BINS, ScanningSonar
+from tests.devices.ideal import ideal
+from tests.devices.running import run, started
 
 DEG = math.radians(1.0)
 small = st.floats(-0.3, 0.3)

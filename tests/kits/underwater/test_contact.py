@@ -10,7 +10,7 @@ from scipy.spatial.transform import Rotation
 
 from seatrial.physics.contact import friction as coulomb
 from seatrial.physics.contact import hunt_crossley, restitution
-from seatrial.physics.environment.contact import Contact
+from seatrial_kits.underwater.contact import Contact
 from tests.devices.running import started
 
 G = 9.81

@@ -8,7 +8,7 @@ from scipy.spatial.transform import Rotation
 
 from seatrial.errors import InputError
 from seatrial.physics.contact import hunt_crossley, restitution
-from seatrial.physics.environment.collision import Collision, nearest_points
+from seatrial_kits.underwater.collision import Collision, nearest_points
 
 M1, M2, I1, I2 = 55.0, 22.0, 20.0, 5.0  # kg, kg.m2
 

@@ -9,10 +9,10 @@ from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
 from seatrial.errors import InputError
-from seatrial.physics.seabed.obstacles import read_obstacles
-from seatrial.physics.seabed.plane import Plane
-from seatrial.physics.seabed.scene import Scene
-from seatrial.physics.seabed.shapes import Box, Capsule, Cylinder, Sphere
+from seatrial_kits.underwater.seabed.obstacles import read_obstacles
+from seatrial_kits.underwater.seabed.plane import Plane
+from seatrial_kits.underwater.seabed.scene import Scene
+from seatrial_kits.underwater.seabed.shapes import Box, Capsule, Cylinder, Sphere
 
 number = st.floats(-8.0, 8.0)
 point = st.tuples(number, number, number)

@@ -8,11 +8,12 @@ from typing import ClassVar
 
 import numpy as np
 
-from ..errors import InputError
-from ..model.component import Input, Parameter, terminal
-from ..physics.craft.kinematics import to_ned
+from seatrial.devices.sensor import Derived, Measured, Sensor, Value
+from seatrial.errors import InputError
+from seatrial.model.component import Input, Parameter, terminal
+from seatrial.physics.craft.kinematics import to_ned
+
 from .seawater import CELSIUS, conductivity, salinity, sound_speed
-from .sensor import Derived, Measured, Sensor, Value
 
 _LEVELS = tuple(f"d{number}" for number in range(1, 9))
 

@@ -7,9 +7,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
-from seatrial.physics.seabed.plane import Plane
-from seatrial.physics.seabed.scene import Scene, first_return
-from seatrial.physics.seabed.shapes import Sphere
+from seatrial_kits.underwater.seabed.plane import Plane
+from seatrial_kits.underwater.seabed.scene import Scene, first_return
+from seatrial_kits.underwater.seabed.shapes import Sphere
 
 DOWN = (0.0, 0.0, 1.0)
 

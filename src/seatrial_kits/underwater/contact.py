@@ -7,11 +7,12 @@ import math
 from collections.abc import Iterator, Sequence
 from typing import ClassVar
 
-from ...model.component import Component, Input, Output, Parameter, terminal
-from ..contact import friction, hunt_crossley
-from ..craft.kinematics import Vector3, cross, to_body, to_ned
-from ..seabed.parameters import OverSeabed
-from ..seabed.vectors import along, dot
+from seatrial.model.component import Component, Input, Output, Parameter, terminal
+from seatrial.physics.contact import friction, hunt_crossley
+from seatrial.physics.craft.kinematics import Vector3, cross, to_body, to_ned
+
+from .seabed.parameters import OverSeabed
+from .seabed.vectors import along, dot
 
 _CORNERS = tuple(itertools.product((0.5, -0.5), repeat=3))
 

@@ -5,8 +5,8 @@ import pytest
 
 from seatrial.errors import InputError
 from seatrial.model.component import Component
-from seatrial.physics.seabed.grid import read_grid
-from seatrial.physics.seabed.parameters import OverSeabed
+from seatrial_kits.underwater.seabed.grid import read_grid
+from seatrial_kits.underwater.seabed.parameters import OverSeabed
 
 ASC = """ncols 3
 nrows 2

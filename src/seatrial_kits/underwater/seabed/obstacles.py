@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 
-from ...errors import InputError, unknown
+from seatrial.errors import InputError, unknown
+
 from .shapes import Box, Capsule, Cylinder, Shape, Sphere
 
 _NUMBERS = {

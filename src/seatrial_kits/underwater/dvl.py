@@ -8,11 +8,12 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from ..model.component import Input, Parameter, seconds, terminal
-from ..physics.craft.kinematics import Vector3, cross, to_body, to_ned
-from ..physics.sea.parameters import MeetsCurrent
-from ..physics.seabed.vectors import dot
-from .sensor import ALWAYS_THERE, Derived, Measured, Value, full_circle, half_circle
+from seatrial.devices.sensor import ALWAYS_THERE, Derived, Measured, Value, full_circle, half_circle
+from seatrial.model.component import Input, Parameter, seconds, terminal
+from seatrial.physics.craft.kinematics import Vector3, cross, to_body, to_ned
+from seatrial.physics.sea.parameters import MeetsCurrent
+
+from .seabed.vectors import dot
 from .sounding import Sounding
 
 _DEG = math.radians(1.0)

@@ -12,7 +12,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from ...errors import InputError, unknown
+from seatrial.errors import InputError, unknown
+
 from .vectors import Vector, unit
 
 Array = npt.NDArray[np.float64]

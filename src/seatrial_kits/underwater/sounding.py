@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from ..model.component import Input, Parameter
-from ..physics.craft.kinematics import Vector3, to_ned
-from ..physics.seabed.parameters import OverSeabed
-from .sensor import Sensor
+from seatrial.devices.sensor import Sensor
+from seatrial.model.component import Input, Parameter
+from seatrial.physics.craft.kinematics import Vector3, to_ned
+
+from .seabed.parameters import OverSeabed
 
 
 class Sounding(OverSeabed, Sensor):

@@ -5,9 +5,10 @@ from __future__ import annotations
 from functools import lru_cache
 from pathlib import Path
 
-from ...errors import InputError
-from ...files.whole_file import stamp
-from ...model.component import Component, Parameter
+from seatrial.errors import InputError
+from seatrial.files.whole_file import stamp
+from seatrial.model.component import Component, Parameter
+
 from .grid import read_grid
 from .obstacles import read_obstacles
 from .plane import Plane

@@ -6,11 +6,12 @@ import math
 from collections.abc import Sequence
 from typing import ClassVar
 
-from ...errors import InputError
-from ...model.component import Component, Input, Output, Parameter, terminal
-from ..contact import friction, hunt_crossley
-from ..craft.kinematics import Vector3, cross, to_body, to_ned
-from ..seabed.vectors import along, dot, minus
+from seatrial.errors import InputError
+from seatrial.model.component import Component, Input, Output, Parameter, terminal
+from seatrial.physics.contact import friction, hunt_crossley
+from seatrial.physics.craft.kinematics import Vector3, cross, to_body, to_ned
+
+from .seabed.vectors import along, dot, minus
 
 _EULER = ("phi", "theta", "psi")
 

@@ -8,10 +8,10 @@ from typing import ClassVar
 
 import numpy as np
 
-from ..errors import InputError
-from ..model.component import NS, Input, Parameter, terminal
-from ..physics.craft.kinematics import Vector3, to_ned
-from .sensor import Derived, Measured, Sensor, Value
+from seatrial.devices.sensor import Derived, Measured, Sensor, Value
+from seatrial.errors import InputError
+from seatrial.model.component import NS, Input, Parameter, terminal
+from seatrial.physics.craft.kinematics import Vector3, to_ned
 
 COUNT = 6
 """Most transponders."""

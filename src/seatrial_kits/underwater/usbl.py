@@ -6,9 +6,9 @@ import math
 from collections.abc import Sequence
 from typing import ClassVar
 
-from ..model.component import NS, Input, Parameter, terminal
-from ..physics.craft.kinematics import Vector3, to_body, to_ned
-from .sensor import Derived, Measured, Sensor, Value, full_circle
+from seatrial.devices.sensor import Derived, Measured, Sensor, Value, full_circle
+from seatrial.model.component import NS, Input, Parameter, terminal
+from seatrial.physics.craft.kinematics import Vector3, to_body, to_ned
 
 _DEG = math.radians(1.0)
 _NOTHING = (None, None, None)

@@ -6,9 +6,10 @@ import math
 from collections.abc import Sequence
 from typing import ClassVar
 
-from ..model.component import Parameter, terminal
-from ..physics.seabed.vectors import Vector, dot
-from .sensor import Derived, Measured, Value, full_circle
+from seatrial.devices.sensor import Derived, Measured, Value, full_circle
+from seatrial.model.component import Parameter, terminal
+
+from .seabed.vectors import Vector, dot
 from .sounding import Sounding
 
 BINS = 64

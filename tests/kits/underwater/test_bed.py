@@ -9,9 +9,9 @@ from hypothesis import strategies as st
 from scipy.interpolate import RegularGridInterpolator
 from scipy.optimize import brentq
 
-from seatrial.physics.seabed.grid import Grid
-from seatrial.physics.seabed.plane import Plane
-from seatrial.physics.seabed.scene import Scene
+from seatrial_kits.underwater.seabed.grid import Grid
+from seatrial_kits.underwater.seabed.plane import Plane
+from seatrial_kits.underwater.seabed.scene import Scene
 
 angle = st.floats(-7.0, 7.0)
 DOWN = (0.0, 0.0, 1.0)

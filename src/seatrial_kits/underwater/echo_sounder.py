@@ -6,9 +6,10 @@ import math
 from collections.abc import Sequence
 from typing import ClassVar
 
-from ..model.component import Parameter, terminal
-from ..physics.seabed.scene import first_return
-from .sensor import Measured, Value, require_unit
+from seatrial.devices.sensor import Measured, Value, require_unit
+from seatrial.model.component import Parameter, terminal
+
+from .seabed.scene import first_return
 from .sounding import Sounding
 
 _DEG = math.radians(1.0)

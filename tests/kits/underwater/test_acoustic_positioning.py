@@ -9,12 +9,11 @@ from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
 from seatrial.devices.gnss import Gnss
-from seatrial.devices.lbl import Lbl
-from seatrial.devices.usbl import Usbl
 from seatrial.errors import InputError
-
-from .ideal import ideal
-from .running import run, started
+from seatrial_kits.underwater.lbl import Lbl
+from seatrial_kits.underwater.usbl import Usbl
+from tests.devices.ideal import ideal
+from tests.devices.running import run, started
 
 far = st.floats(-150.0, 150.0)
 deep = st.floats(1.0, 90.0)
