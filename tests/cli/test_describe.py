@@ -32,10 +32,10 @@ def test_a_trials_rig_is_described_with_its_choices(tmp_path) -> None:
 
 
 def test_mistakes_have_near_misses(tmp_path) -> None:
-    done = seatrial("describe", "sil", "--vehicle", "glorai", cwd=tmp_path)
+    done = seatrial("describe", "sil", "--vehicle", "otetr", cwd=tmp_path)
     assert done.returncode == 2
-    assert "did you mean 'vehicles/gloria'" in done.stderr
-    done = seatrial("describe", "sil", "--choose", "vessel=gloria", cwd=tmp_path)
+    assert "did you mean 'vehicles/otter'" in done.stderr
+    done = seatrial("describe", "sil", "--choose", "vessel=otter", cwd=tmp_path)
     assert "unknown choice 'vessel'" in done.stderr
     (tmp_path / "mine.toml").write_text(
         'rig = "sil"\nstop = "1 s"\nchoices = { vehicle = "hydrona" }\n'

@@ -380,8 +380,8 @@ def test_sections_are_found_in_the_rigs_profile_or_in_the_one_they_name(write):
     profiles = Profiles("hydrone", write("rig.toml", "").parent)
     own, section = profiles.find("sensors.gnss", "here")
     assert (own.read_from.name, section) == ("hydrone", "sensors.gnss")
-    other, section = profiles.find("gloria:sensors.gnss", "here")
-    assert (other.read_from.name, section) == ("gloria", "sensors.gnss")
+    other, section = profiles.find("bluerov2:sensors.depth", "here")
+    assert (other.read_from.name, section) == ("bluerov2", "sensors.depth")
     with pytest.raises(InputError, match="here: the rig names no profile"):
         Profiles(None, write("rig.toml", "").parent).find("sensors.gnss", "here")
 

@@ -14,6 +14,7 @@ from seatrial.physics.craft.rov import Rov
 from seatrial.physics.craft.surface_vessel import SurfaceVessel
 from seatrial.physics.craft.thruster_ship import ThrusterShip
 from seatrial.physics.parts.mmg_ship import MmgShip
+from tests.kit import vehicles
 from tests.sea.references import content, table
 
 from .fleet import FLEET, craft, states
@@ -134,7 +135,7 @@ TURNING = {
 }
 
 
-@pytest.mark.parametrize("vehicle", TURNING)
+@pytest.mark.parametrize("vehicle", vehicles(*TURNING))
 def test_a_current_carries_a_turning_craft_as_if_it_stood_still(vehicle):
     name, start, changes = TURNING[vehicle]
     stream = 0.5 * np.array([math.cos(0.6), math.sin(0.6)])

@@ -13,11 +13,12 @@ from seatrial.fmi.components.index import component_class
 from seatrial.system.parameters import load_vehicle
 from seatrial.system.profile.profile import load_profile
 from tests.craft.references import in_si
+from tests.kit import vehicles
 
 from .running import started
 
 G = 9.81
-# A camera measures what there is beside the vehicle, tests/devices/test_camera.py; a log measures
+# A camera measures what there is beside the vehicle, tests/kits/sailing/test_camera.py; a log measures
 # the water, tests/craft/test_through_water.py.
 SECTIONS = {
     vehicle: [
@@ -25,7 +26,7 @@ SECTIONS = {
         for section in load_profile(vehicle).sections()
         if section.startswith("sensors.") and section not in ("sensors.camera", "sensors.log")
     ]
-    for vehicle in (
+    for vehicle in vehicles(
         "hydrone",
         "videoray",
         "gloria",

@@ -4,14 +4,8 @@ import itertools
 
 import pytest
 
-from seatrial.fmi.components.index import component_class, components
 from seatrial.model.component import Component
-
-
-def classes(*names: str) -> tuple[type[Component], ...]:
-    """Return the classes of these components, without those of kits that are not here."""
-    return tuple(component_class(name) for name in names if name in components().names())
-
+from tests.kit import classes
 
 SIX_DOF = classes("marine-craft", "rov")
 PLANAR = classes("thruster-ship", "surface-vessel")
