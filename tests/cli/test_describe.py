@@ -9,6 +9,7 @@ from tests.kit import needs_kits
 
 
 @pytest.mark.slow
+@needs_kits("videoray")
 def test_every_connection_is_shown_and_what_is_open(tmp_path) -> None:
     done = seatrial("describe", "sil", "--vehicle", "videoray", cwd=tmp_path)
     assert done.returncode == 0, done.stderr

@@ -152,6 +152,6 @@ def test_limits_beyond_those_of_what_it_sets_are_refused(tmp_path):
 def test_every_shipped_profile_is_here():
     shipped = {path.stem for path in (Path(__file__).parents[2] / "hil_profiles").glob("*.toml")}
     assert shipped == {
-        *("hydrone", "videoray", "mariner", "kvlcc2", "otter", "bluerov2"),
+        *("hydrone", "mariner", "kvlcc2", "otter", "bluerov2"),
         *("remus100", "glider", "supply-ship", "wam-v"),
     }

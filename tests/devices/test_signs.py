@@ -85,6 +85,7 @@ def turn(component, table, duration, part="", **values):
     return {name: craft.get(name) for name in craft.terminals["motion"].members}
 
 
+HULLS = {"ship": "thruster-ship", "surface": "videoray-surface"}
 TURNS = {
     "hydrone": lambda: turn(
         "marine-craft", "hydrone", 60.0, force_1=[20, 0, 0], moment_1=[0, 0, 3]
@@ -149,7 +150,7 @@ def test_heeled_to_starboard_with_the_bow_up(vehicle, section):
             assert value.ravel()[-1] == pytest.approx(math.tau - 1.0)
 
 
-@pytest.mark.parametrize("vehicle", TURNS)
+@pytest.mark.parametrize("vehicle", [name for name in TURNS if vehicles(HULLS.get(name, name))])
 def test_the_craft_turns_to_starboard(vehicle):
     motion = TURNS[vehicle]()
     (u, v, _), r = motion["velocity"], motion["rates"][2]
