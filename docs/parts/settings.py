@@ -9,7 +9,7 @@ from parts import part
 from parts.markdown import shown_unit, shown_value, table
 from seatrial.fmi.components.source import shipped_sources
 from seatrial.model.ports import Parameter
-from seatrial.shipped import shipped_folder
+from seatrial.shipped import available
 from seatrial.system.parameters import load_vehicle
 from seatrial.system.profile.kinds import keys
 from seatrial.system.references.entries import Resolved
@@ -145,7 +145,7 @@ part("supply-ship-parameters")(partial(parameters, "supply-ship"))
 
 def sensors_of(profile: str) -> str:
     """Sensors of a profile, as its file has them."""
-    path = shipped_folder("hil_profiles") / f"{profile}.toml"
+    path = available("hil_profiles")[profile]
     sensors = tomllib.loads(path.read_text("utf-8"))["sensors"]
     rows = []
     for name, entries in sensors.items():

@@ -5,11 +5,11 @@ import math
 import pytest
 
 from seatrial.control.depth_hold import DepthHold
-from seatrial.control.heading_autopilot import HeadingAutopilot
 from seatrial.control.heading_hold import HeadingHold
-from seatrial.control.reference_filter import HeadingReference
 from seatrial.control.rudder_helm import RudderHelm
 from seatrial.control.speed_hold import SpeedHold
+from seatrial_kits.ships.control.heading_autopilot import HeadingAutopilot
+from seatrial_kits.ships.control.reference_filter import HeadingReference
 from tests.devices.running import started
 
 LOOPS = {

@@ -7,11 +7,11 @@ import pytest
 
 from seatrial.fmi.components.index import component_class, components
 from seatrial.model.component import Component, Output
-from seatrial.physics.craft.manoeuvring_ship import ManoeuvringShip
 from seatrial.physics.craft.marine_craft import MarineCraft
 from seatrial.physics.craft.planar import PlanarCraft
 from seatrial.physics.craft.six_dof import SixDofCraft
-from seatrial.physics.craft.thruster_ship import ThrusterShip
+from seatrial_kits.ships.hulls.manoeuvring_ship import ManoeuvringShip
+from seatrial_kits.ships.hulls.thruster_ship import ThrusterShip
 
 PLACE, PULL = (-1.2, 0.4, -0.7), (3.0, -5.0, 2.0)
 SHIP = {"mass": 40.0, "inertia": 9.0, "center_of_gravity": 0.1, "X_udot": -4.0, "Y_vdot": -30.0}

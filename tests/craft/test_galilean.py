@@ -15,7 +15,8 @@ from tests.craft.fleet import FLEET, craft
 from tests.kit import vehicles
 
 DURATION = 1.0
-CRAFT = [name for name in FLEET if name not in ("gloria", "mariner")] + ["mariner cubic"]
+CRAFT = [name for name in FLEET if name not in ("gloria", "mariner")]
+CRAFT += [f"{name} cubic" for name in vehicles("mariner")]
 
 
 def moved(name, orders, water, h):

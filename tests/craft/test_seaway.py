@@ -265,7 +265,7 @@ def test_sections_of_another_waterplane_are_refused():
 
 
 def test_ships_are_pushed_by_the_wind():
-    for vehicle in ("hydrone", "mariner", "kvlcc2", "thruster-ship"):
+    for vehicle in vehicles("hydrone", "mariner", "kvlcc2", "thruster-ship"):
         hull = craft(vehicle, wind_speed=15.0, wind_direction=math.pi / 2)
         calm = craft(vehicle)
         pushed, still = states(hull, 20.0, 0.1), states(calm, 20.0, 0.1)

@@ -7,13 +7,13 @@ import pytest
 
 from seatrial.devices.actuators.actuator import INTERVAL_NS, LATE_NS
 from seatrial.devices.actuators.angle_servo import AngleServo
-from seatrial.devices.actuators.force_actuator import ForceActuator
 from seatrial.devices.actuators.motor import Motor
-from seatrial.devices.actuators.rudder_machine import RudderMachine
 from seatrial.devices.actuators.servo import Servo
 from seatrial.devices.actuators.thruster import Thruster
 from seatrial.errors import InputError, SimulationError
 from seatrial.model.faults.catalogue import FAILURES as FAULTS
+from seatrial_kits.ships.devices.force_actuator import ForceActuator
+from seatrial_kits.ships.devices.rudder_machine import RudderMachine
 from tests.kit import classes
 
 from .running import run, started

@@ -129,6 +129,6 @@ def test_mistakes(tmp_path) -> None:
     done = seatrial("describe", "sil", "--diagram", "rig.png", cwd=tmp_path)
     assert done.returncode == 2
     assert "--diagram: rig.png: the drawing is SVG: a name that ends in .svg" in done.stderr
-    done = seatrial("describe", "mariner-step-5", "--diagram", "none/rig.svg", cwd=tmp_path)
+    done = seatrial("describe", "otter-straight", "--diagram", "none/rig.svg", cwd=tmp_path)
     assert done.returncode == 3, done.stderr
     assert "none/rig.svg: No such file or directory" in done.stderr

@@ -16,7 +16,7 @@ from seatrial.trial.running.run import run_trial
 from seatrial_kits.interchange.export import export_ssp
 from tests.kit import needs_kits
 
-pytestmark = needs_kits("videoray")
+pytestmark = needs_kits("ships", "videoray")
 RIG = """
 step = "20 ms"
 [components]

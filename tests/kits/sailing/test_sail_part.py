@@ -3,7 +3,7 @@
 import numpy as np
 
 from seatrial_kits.sailing.sailboat import Sailboat
-from tests.craft.fitted.fitting import craft, load, padded
+from tests.kits.fitted.fitting import craft, load, padded
 
 
 def test_a_sail_is_that_of_the_sailing_boat():

@@ -22,11 +22,12 @@ from seatrial.physics.craft.kinematics import rotation_rows
 from seatrial.physics.craft.rov import Rov
 from seatrial.physics.craft.terms.context import Context
 from seatrial.physics.craft.terms.slender import hull_lift
+from seatrial.shipped import available
 from seatrial.system.parameters import load_vehicle
 from seatrial_kits.videoray.vessel.thruster_allocation import ThrusterAllocation
 from tests.devices.running import started
 
-PILOT_FILE = Path(__file__).parents[3] / "harness" / "vehicles" / "videoray" / "pilot.toml"
+PILOT_FILE = available("vehicles")["videoray"].with_name("pilot.toml")
 DATA = Path(__file__).parents[2] / "reference"
 STATES = ("x", "y", "z", "phi", "theta", "psi", "u", "v", "w", "p", "q", "r")
 FULL = np.array([46.7, 46.7, 25.0])
