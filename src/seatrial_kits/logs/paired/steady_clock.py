@@ -8,9 +8,9 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ...links.clock_jumps import clock_jumps
-from .channels import Array, Channel, Log
-from .clock_times import date_of
+from seatrial.links.clock_jumps import clock_jumps
+from seatrial.trial.logs.channels import Array, Channel, Log
+from seatrial.trial.logs.clock_times import date_of
 
 LATEST = 1e6
 """s; later times are not exact to the nanosecond, and are counted from the first entry."""

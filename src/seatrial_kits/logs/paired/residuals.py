@@ -8,10 +8,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...errors import InputError
-from ...model.readable import number
-from ...model.units import conversion
-from .channels import Array
+from seatrial.errors import InputError
+from seatrial.model.readable import number
+from seatrial.model.units import conversion
+from seatrial.trial.logs.channels import Array
+
 from .resampling import Trace, turn_of
 
 LONGEST_LAG = 10.0

@@ -7,13 +7,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...errors import InputError, unknown
-from ..records.run_folder import Run
-from .channels import Array, Log
+from seatrial.errors import InputError, unknown
+from seatrial.trial.logs.channels import Array, Log
+from seatrial.trial.logs.quantities import Column, defaults
+from seatrial.trial.records.run_folder import Run
+
+from ..run_log import of_craft
 from .common_time import GAP
-from .quantities import Column, defaults
 from .resampling import Trace, served, trace, unwrapped
-from .run_log import of_craft
 
 _PLACE = ("latitude", "longitude")
 _SPEEDS = {"yaw_rate": "rates.r"}

@@ -8,8 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from seatrial.errors import InputError
-from seatrial.trial.logs.resampling import Trace, unwrapped
-from seatrial.trial.logs.residuals import residual_of
+from seatrial_kits.logs.paired.resampling import Trace, unwrapped
+from seatrial_kits.logs.paired.residuals import residual_of
 
 
 def trace(time, values, unit="m", *, gap=math.inf, held=False):

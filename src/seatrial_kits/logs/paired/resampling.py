@@ -8,11 +8,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ...errors import InputError
-from ...model.units import conversion, unit
-from .channels import Array, Log
+from seatrial.errors import InputError
+from seatrial.model.units import conversion, unit
+from seatrial.trial.logs.channels import Array, Log
+from seatrial.trial.logs.quantities import QUANTITIES, Column, Quantity, defaults, series
+
 from .common_time import GAP
-from .quantities import QUANTITIES, Column, Quantity, defaults, series
 
 HELD_MOST = 16
 """A channel of a log that is no table, with so few different values, is a state that is held."""

@@ -22,7 +22,7 @@ from pyulog import ULog
 from rosbags.rosbag2 import StoragePlugin, Writer
 from rosbags.typesys import Stores, get_typestore
 
-from .circle import UNIX, circle, degrees
+from tests.kits.logs.circle import UNIX, circle, degrees
 
 RUDDER_MOST = math.radians(35.0)
 SERVO = {"SERVO1_FUNCTION": 26, "SERVO1_MIN": 1100, "SERVO1_TRIM": 1500, "SERVO1_MAX": 1900}

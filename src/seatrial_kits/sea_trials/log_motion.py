@@ -7,10 +7,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from ...errors import InputError, listed
-from .channels import Array, Log
-from .common_time import WHOLE, Together, Window, together
-from .quantities import Column, Series, chosen
+from seatrial.errors import InputError, listed
+from seatrial.trial.logs.channels import Array, Log
+from seatrial.trial.logs.quantities import Column, Series, chosen
+from seatrial_kits.logs.paired.common_time import WHOLE, Together, Window, together
 
 _LOCAL, _GEODETIC = ("north", "east"), ("latitude", "longitude")
 

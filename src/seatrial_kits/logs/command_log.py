@@ -12,15 +12,16 @@ from rich.box import SIMPLE
 from rich.markup import escape
 from rich.table import Table
 
-from ..model.readable import number
-from ..trial.logs.channels import Channel
-from ..trial.logs.common_time import GAP
-from ..trial.logs.formats import FORMATS, format_of, read_log
-from ..trial.logs.quantities import defaults, read_columns, series
-from .answer import answer
-from .options import LogColumns, LogFormat
-from .reading import reading
-from .show import console, print_notes, print_table
+from seatrial.cli.answer import answer
+from seatrial.cli.options import LogColumns, LogFormat
+from seatrial.cli.reading import reading
+from seatrial.cli.show import console, print_notes, print_table
+from seatrial.model.readable import number
+from seatrial.trial.logs.channels import Channel
+from seatrial.trial.logs.formats import FORMATS, format_of, read_log
+from seatrial.trial.logs.quantities import defaults, read_columns, series
+
+from .paired.common_time import GAP
 
 _MOST_SHOWN = 40
 """Channels of a log that are all shown."""

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from seatrial.links.clock_jumps import clock_jumps
 from seatrial.trial.logs.channels import Log, channel
-from seatrial.trial.logs.steady_clock import from_zero, steady
+from seatrial_kits.logs.paired.steady_clock import from_zero, steady
 
 
 def log(times, values=None):

@@ -14,13 +14,14 @@ from typing import Any
 
 import numpy as np
 
-from ...errors import InputError, unknown
-from ..records.run_folder import ends_with_newline
-from .channels import Array, Channel, Integers, Log, channel
-from .clock_times import of_day, parsed_time, past_midnight
-from .formats import Format
-from .quantities import QUANTITIES, Column, series
-from .reading_progress import open_text
+from seatrial.errors import InputError, unknown
+from seatrial.trial.logs.channels import Array, Channel, Integers, Log, channel
+from seatrial.trial.logs.clock_times import of_day, parsed_time, past_midnight
+from seatrial.trial.logs.formats import Format
+from seatrial.trial.logs.quantities import QUANTITIES, Column, series
+from seatrial.trial.logs.reading_progress import open_text
+from seatrial.trial.records.run_folder import ends_with_newline
+
 from .run_log import of_craft
 
 _SEPARATORS = (";", "\t", ",")

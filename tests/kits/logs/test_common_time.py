@@ -8,9 +8,9 @@ import pytest
 
 from seatrial.errors import InputError
 from seatrial.trial.logs.channels import Log, Samples, channel, distinguished
-from seatrial.trial.logs.common_time import together
-from seatrial.trial.logs.motion import motion
 from seatrial.trial.logs.quantities import Column, chosen
+from seatrial_kits.logs.paired.common_time import together
+from seatrial_kits.sea_trials.log_motion import motion
 
 
 def log_of(**series):

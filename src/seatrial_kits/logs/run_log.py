@@ -7,10 +7,10 @@ from pathlib import Path
 
 import numpy as np
 
-from ..records.run_folder import MANIFEST, SIGNALS, Run, load_run
-from .channels import Log, channel
-from .formats import Format
-from .quantities import Column
+from seatrial.trial.logs.channels import Log, channel
+from seatrial.trial.logs.formats import Format
+from seatrial.trial.logs.quantities import Column
+from seatrial.trial.records.run_folder import MANIFEST, SIGNALS, Run, load_run
 
 _OF_CRAFT = {
     "north": "position.x",

@@ -11,9 +11,8 @@ from seatrial.trial.logs.channels import Samples
 from seatrial.trial.logs.formats import read_log
 from seatrial.trial.logs.reading_progress import told
 from tests.kit import needs_kits
-
-from . import circle
-from .test_mutated_logs import TIME, WRITERS
+from tests.kits.logs import circle
+from tests.kits.logs.test_mutated_logs import TIME, WRITERS
 
 
 def shares_of(path, format_name):

@@ -9,9 +9,9 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.interpolate import PchipInterpolator
 
-from ...errors import InputError
-from .channels import Array
-from .quantities import Series
+from seatrial.errors import InputError
+from seatrial.trial.logs.channels import Array
+from seatrial.trial.logs.quantities import Series
 
 FASTEST = 30.0
 """rad/s; an angle that turns faster is not in radians."""

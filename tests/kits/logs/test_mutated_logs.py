@@ -11,12 +11,11 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from seatrial.errors import InputError
-from seatrial.trial.logs.common_time import together
 from seatrial.trial.logs.formats import FORMATS, read_log
 from seatrial.trial.logs.quantities import Column, chosen, defaults
+from seatrial_kits.logs.paired.common_time import together
 from tests.kit import needs_kits
-
-from . import circle, writers
+from tests.kits.logs import circle, writers
 
 pytestmark = needs_kits("ardupilot", "logs", "mavlink", "nmea", "px4")
 WRITERS = {

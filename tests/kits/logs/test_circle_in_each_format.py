@@ -11,9 +11,8 @@ from seatrial_kits.sea_trials.figures.record import Record
 from seatrial_kits.sea_trials.figures.turning import turning_circle
 from seatrial_kits.sea_trials.log_record import read_record
 from tests.kit import needs_kits
-
-from . import writers
-from .circle import APPROACH_S, RATE, SPEED, circle
+from tests.kits.logs import writers
+from tests.kits.logs.circle import APPROACH_S, RATE, SPEED, circle
 
 pytestmark = needs_kits("ardupilot", "logs", "mavlink", "nmea", "px4")
 
