@@ -8,11 +8,12 @@ from typing import Any, ClassVar
 
 import casadi as ca
 
-from ...model.component import Input, Parameter, terminal
-from ...model.plant import Plant, State
-from ...model.ports import Output
+from seatrial.model.component import Input, Parameter, terminal
+from seatrial.model.plant import Plant, State
+from seatrial.model.ports import Output
+from seatrial.physics.craft.symbolic import euler_rate_matrix, rotation_matrix
+
 from .legs import Legs, inside
-from .symbolic import euler_rate_matrix, rotation_matrix
 
 _EULER = ("phi", "theta", "psi")
 _DOWN = ca.DM([0, 0, 1])

@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from seatrial.physics.environment.deck_limits import DeckLimits
+from seatrial_kits.drone.deck_limits import DeckLimits
 
 G = 9.81
 

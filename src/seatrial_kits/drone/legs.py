@@ -6,7 +6,7 @@ from typing import Any
 
 import casadi as ca
 
-from ..contact import friction, hunt_crossley
+from seatrial.physics.contact import friction, hunt_crossley
 
 _SIGNS = ((1, -1), (1, 1), (-1, -1), (-1, 1))
 _THICKNESS = 0.05

@@ -10,9 +10,8 @@ from scipy.spatial.transform import Rotation
 
 from seatrial.physics.contact import friction as coulomb
 from seatrial.physics.contact import hunt_crossley
-from seatrial.physics.craft.legged_drone import LeggedDrone
-
-from .numerically import numbers
+from seatrial_kits.drone.legged_drone import LeggedDrone
+from tests.craft.numerically import numbers
 
 G, MASS, LEG, STIFFNESS = 9.81, 10.0, 0.25, 6131.0
 WEIGHT = MASS * G

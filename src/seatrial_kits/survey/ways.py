@@ -10,16 +10,17 @@ from itertools import takewhile
 from pathlib import Path
 from typing import Any
 
-from ...errors import SimulationError
-from ...fmi.instance import Variable
-from ...fmi.interfaces.loaded import LoadedFmu
-from ...fmi.loading.built import with_library
-from ...fmi.loading.load import open_instance
-from ...model.component import NS
-from ...system.assembling.assembly import assemble
-from ...system.flattening import load_rig
-from ..instants import interval
-from ..master import Master
+from seatrial.errors import SimulationError
+from seatrial.fmi.instance import Variable
+from seatrial.fmi.interfaces.loaded import LoadedFmu
+from seatrial.fmi.loading.built import with_library
+from seatrial.fmi.loading.load import open_instance
+from seatrial.model.component import NS
+from seatrial.sim.instants import interval
+from seatrial.sim.master import Master
+from seatrial.system.assembling.assembly import assemble
+from seatrial.system.flattening import load_rig
+
 from .experiment import Experiment
 
 Rows = dict[str, list[Any]]

@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 
 from seatrial.fmi.components.source import named_sources
-from seatrial.sim.survey.surveying import fmus_in, survey
 from seatrial_kits.native.export import build_native_fmu
+from seatrial_kits.survey.surveying import fmus_in, survey
 
 
 @pytest.mark.slow

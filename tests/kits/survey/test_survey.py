@@ -15,13 +15,13 @@ from typing import Any
 import pytest
 import typer
 
-from seatrial.cli.survey import survey_folder
 from seatrial.errors import InputError
 from seatrial.fmi.building.export import build_fmu
 from seatrial.fmi.components.source import named_sources
-from seatrial.sim.survey import surveying
-from seatrial.sim.survey.surveying import Surveyed, fmus_in, survey
-from seatrial.sim.survey.ways import WAYS
+from seatrial_kits.survey import surveying
+from seatrial_kits.survey.command import survey_folder
+from seatrial_kits.survey.surveying import Surveyed, fmus_in, survey
+from seatrial_kits.survey.ways import WAYS
 from tests.command import seatrial
 from tests.fmi.models import build_model_fmu
 from tests.fmi.native import changed, dying, without_events

@@ -6,8 +6,8 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
-from ...fmi.interfaces.loaded import LoadedFmu
-from ...model.component import NS
+from seatrial.fmi.interfaces.loaded import LoadedFmu
+from seatrial.model.component import NS
 
 _MOST_STEPS = 1000
 _STEPS = 100

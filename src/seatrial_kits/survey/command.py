@@ -10,10 +10,11 @@ from typing import Annotated
 import typer
 from rich.markup import escape
 
-from ..errors import InputError
-from ..sim.survey.surveying import Surveyed, fmus_in, survey
-from .answer import answer
-from .show import console
+from seatrial.cli.answer import answer
+from seatrial.cli.show import console
+from seatrial.errors import InputError
+
+from .surveying import Surveyed, fmus_in, survey
 
 _COLOURS = {"agrees": "green"} | dict.fromkeys(
     ("runs, FMPy fails", "runs, no outputs", "not run"), "yellow"

@@ -13,13 +13,14 @@ from multiprocessing.connection import Connection
 from pathlib import Path
 from typing import IO, Any
 
-from ...errors import InputError, SimulationError
-from ...fmi.files.options import FmuOptions
-from ...fmi.interfaces.loaded import LoadedFmu
-from ...fmi.isolation.exit_status import how_ended
-from ...fmi.loading.built import with_library
-from ...fmi.loading.load import load_fmu
-from ...model.component import NS
+from seatrial.errors import InputError, SimulationError
+from seatrial.fmi.files.options import FmuOptions
+from seatrial.fmi.interfaces.loaded import LoadedFmu
+from seatrial.fmi.isolation.exit_status import how_ended
+from seatrial.fmi.loading.built import with_library
+from seatrial.fmi.loading.load import load_fmu
+from seatrial.model.component import NS
+
 from .experiment import Experiment, experiment_of
 from .ways import WAYS, NotThisWay, Rows, Way, compared
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 from typing import Any, ClassVar
 
-from ...model.component import Component, Input, Output, Parameter, terminal
-from ..craft.kinematics import Vector3, cross, specific_force, to_ned
+from seatrial.model.component import Component, Input, Output, Parameter, terminal
+from seatrial.physics.craft.kinematics import Vector3, cross, specific_force, to_ned
 
 
 class DeckLimits(Component):
