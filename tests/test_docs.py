@@ -312,7 +312,7 @@ def test_every_top_level_key_of_the_shipped_files_is_in_its_page() -> None:
             for key in tomllib.loads(path.read_text("utf-8")):
                 assert f"`{key}`" in text, f"{path}: {key}"
     text = (REFERENCE / "profile-keys.md").read_text("utf-8")
-    for path in (ROOT / "hil_profiles").glob("*.toml"):
+    for path in [p for folder in provided_folders("hil_profiles") for p in folder.glob("*.toml")]:
         for key in tomllib.loads(path.read_text("utf-8")):
             assert f"`{key}`" in text, f"{path}: {key}"
 
