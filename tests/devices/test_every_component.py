@@ -14,10 +14,21 @@ from tests.snapshot import changed, snapshot
 
 from .running import run, started
 
+PLACES = (
+    *("seatrial.control.", "seatrial.devices."),
+    *(f"seatrial_kits.fitted.{name}." for name in ("allocation", "control")),
+    *(f"seatrial_kits.sailing.{name}" for name in ("camera", "control.", "stepper")),
+    *(f"seatrial_kits.ships.{name}." for name in ("control", "devices")),
+    *(f"seatrial_kits.underwater.{name}" for name in ("ctd", "dvl", "echo_sounder", "lbl")),
+    *(f"seatrial_kits.underwater.{name}" for name in ("scanning_sonar", "usbl")),
+    *(f"seatrial_kits.videoray.{name}" for name in ("tracking.", "vessel.linear_thruster")),
+    "seatrial_kits.videoray.vessel.thruster_allocation",
+)
+"""Where control and devices are, in the core and in kits."""
 CLASSES = [
     source.component_class()
     for source in shipped_sources().values()
-    if source.module.split(".")[1] in ("control", "devices", "environment", "identification")
+    if source.module.startswith(PLACES)
 ]
 """Those of the index; each declares the values that bring everything in it to life."""
 TEXTS = {"fault": ("none", *FAULTS), "target_kind": TARGETS}
