@@ -17,7 +17,12 @@ from seatrial.system.references.entries import Resolved
 _SENSORS = ("ahrs", "anemometer", "compass", "depth", "gnss", "imu")
 _OF_LINKS = ("arduino", "ardupilot", "can", "gprs", "mavlink", "nmea", "px4", "videoray")
 _PACKAGES = ("seatrial.links.", *(f"seatrial_kits.{kit}." for kit in _OF_LINKS))
-_LINKS = [n for n, s in shipped_sources().items() if s.module.startswith(_PACKAGES)]
+_VEHICLE = tuple(f"seatrial_kits.videoray.{name}." for name in ("cable", "tracking", "vessel"))
+_LINKS = [
+    name
+    for name, source in shipped_sources().items()
+    if source.module.startswith(_PACKAGES) and not source.module.startswith(_VEHICLE)
+]
 
 
 @part("sensor-keys")

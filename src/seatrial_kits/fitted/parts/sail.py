@@ -13,7 +13,7 @@ from seatrial.physics.foils import sail_naca0015
 
 
 def sail(c: Context, slot: SimpleNamespace, angle: Any) -> Any:
-    """Return the load (6,) of a sail of NACA 0015: the law and table of `craft.sailboat`, no flap.
+    """Return the load (6,) of a sail of NACA 0015: law and table of the `Sailboat`, without flap.
 
     The air's velocity at the centre of effort, ``arm`` along the boom from the axis at its
     ``position``, is R^T wind less that of the place over ground; of it the components along x and
