@@ -20,16 +20,16 @@ from seatrial.errors import InputError
 from seatrial.model.units import quantity
 from seatrial.system.parameters import Outline, load_vehicle
 from seatrial.trial.criteria.criteria import parse
-from seatrial.trial.logs.common_time import Window
 from seatrial.trial.logs.formats import format_of, read_log
 from seatrial.trial.logs.quantities import read_columns
-from seatrial.trial.logs.steady_clock import from_zero, steady
 from seatrial.trial.records.run_folder import MANIFEST
 from seatrial.trial.reports.playing import play
 from seatrial.trial.reports.report import write_report
 from seatrial.trial.running.output import claim_folder
 
 from .imported import Wanted, imported, write_run
+from .paired.common_time import Window
+from .paired.steady_clock import from_zero, steady
 
 Begin = Annotated[
     str | None, typer.Option("--from", metavar="TIME", help="Begin of the part of the log: '60 s'.")

@@ -20,13 +20,14 @@ from seatrial.errors import InputError, unmatched
 from seatrial.system.parameters import Outline
 from seatrial.trial.criteria.criteria import parse
 from seatrial.trial.logs.channels import Array, Log
-from seatrial.trial.logs.common_time import WHOLE, Window
 from seatrial.trial.logs.formats import FORMATS
-from seatrial.trial.logs.pairing import local_metres
 from seatrial.trial.logs.quantities import QUANTITIES, Column, defaults
-from seatrial.trial.logs.resampling import Trace, served, trace
 from seatrial.trial.records.run_folder import MANIFEST, SIGNALS, TIMING, VERDICTS
 from seatrial.trial.running.output import write_json
+
+from .paired.common_time import WHOLE, Window
+from .paired.pairing import local_metres
+from .paired.resampling import Trace, served, trace
 
 COMPONENT = "log"
 """The component that has all signals of a log."""

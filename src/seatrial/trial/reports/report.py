@@ -29,11 +29,11 @@ from .metrics_section import metrics_figure, metrics_of
 from .parameter_tables import parameter_tables, value_text
 from .plotly_js import plotly_js
 from .plots import MAX_POINTS, Line, Mark, Panel, deck_figure, time_figure, track_figure
-from .sailing import add_wind_and_marks
 from .sea_section import sea_figures
 from .templates import environment
 from .tethers import tether_figures
 from .timing_section import pacing, step_times
+from .wind_and_marks import add_wind_and_marks
 
 REPORT = "report.html"
 _MOTION = ("position", "attitude")

@@ -25,9 +25,9 @@ from seatrial.trial.criteria.criteria import parse
 from seatrial.trial.files.trial import Trial, is_trial, load_trial
 from seatrial.trial.files.trial_file import CriterionEntry
 from seatrial.trial.logs.channels import Array, Log
-from seatrial.trial.logs.common_time import Window
-from seatrial.trial.logs.resampling import Trace
 
+from ..paired.common_time import Window
+from ..paired.resampling import Trace
 from ..played import rows_of
 from .asked import SPEED, YAW, Asked, Traces, traces_of
 
