@@ -60,7 +60,7 @@ def barge(**changes):
     return craft
 
 
-@pytest.mark.parametrize("vehicle", CALM)
+@pytest.mark.parametrize("vehicle", vehicles(*CALM))
 def test_without_a_sea_a_craft_moves_as_it_did_before_there_was_one(vehicle):
     # The recorded thruster ship had no drag.
     variant = "published" if vehicle == "thruster-ship" else None
