@@ -248,6 +248,20 @@ def test_a_climbing_rotor_loses_what_its_inflow_says():
     assert climbing.get("thrust") == pytest.approx(WEIGHT - 4 * 1e-3 * HOVER * 2.0, rel=1e-9)
 
 
+def test_a_further_force_acts_along_its_body_axes():
+    pushed = drone(
+        position_start=[0, 0, -10],
+        attitude_start=[0.0, 0.0, math.pi / 2],
+        command=[HOVER] * 4,
+        push=[3.0, -2.0, 1.0],
+        **FAR,
+    )
+    assert pushed.get("acceleration") == pytest.approx([0.3, -0.2, 0.1], abs=1e-8)
+    pushed.advance(0.0, STEP)
+    # Bow to the east; drag takes less than a thousandth of it.
+    assert pushed.get("velocity_n") == pytest.approx([0.2 * STEP, 0.3 * STEP, 0.1 * STEP], rel=1e-3)
+
+
 def test_rotors_follow_their_supply_and_commands_within_limits():
     full = CLOSED["largest speed [rad/s]"]
     for voltage, command, wanted in ((22.2, 9e3, full), (11.1, 9e3, full / 2), (25.0, -5.0, 0.0)):
