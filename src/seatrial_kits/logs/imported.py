@@ -8,6 +8,7 @@ import io
 import json
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field
+from datetime import datetime
 from fnmatch import fnmatchcase
 from pathlib import Path
 from typing import Any
@@ -25,7 +26,14 @@ from seatrial.trial.logs.formats import FORMATS
 from seatrial.trial.logs.pairing import local_metres
 from seatrial.trial.logs.quantities import QUANTITIES, Column, defaults
 from seatrial.trial.logs.resampling import Trace, served, trace
-from seatrial.trial.records.run_folder import MANIFEST, SIGNALS, TIMING, VERDICTS
+from seatrial.trial.records.run_folder import (
+    MANIFEST,
+    SIGNALS,
+    TIMING,
+    VERDICTS,
+    Run,
+    read_verdicts,
+)
 from seatrial.trial.running.output import write_json
 
 COMPONENT = "log"
@@ -60,7 +68,9 @@ class Wanted:
 class Imported:
     """A log on one time axis (n,): signals by name with units, and which quantities they serve."""
 
-    log: Log
+    path: Path
+    start: datetime | None
+    """Date and time of the time 0, where they are known."""
     time: Array
     signals: Mapping[str, Array]
     units: Mapping[str, str]
@@ -93,7 +103,9 @@ def imported(log: Log, wanted: Wanted) -> Imported:
     time = _axis(log, traces, motion, wanted)
     signals, units, unknown = {}, {}, {}
     for name, each in traces.items():
-        values, known = each.at(time)
+        # A column of a long table is in memory once: its own times need no look-up.
+        at_own = len(each.time) == len(time) and np.array_equal(each.time, time)
+        values, known = each.at(each.time if at_own else time)
         signals[f"{COMPONENT}.{name}"], units[f"{COMPONENT}.{name}"] = values, each.unit
         if not known.all():
             unknown[name] = known
@@ -105,7 +117,9 @@ def imported(log: Log, wanted: Wanted) -> Imported:
     _complete_motion(signals, units, len(time), notes)
     switches = frozenset(f"{COMPONENT}.known.{name}" for name in unknown)
     serves = _serves(log, wanted.columns, signals)
-    return Imported(log, time, signals, units, switches, serves, home, (*log.notes, *notes))
+    return Imported(
+        log.path, log.start, time, signals, units, switches, serves, home, (*log.notes, *notes)
+    )
 
 
 def _motion(
@@ -170,7 +184,8 @@ def _axis(
     first, last = wanted.window
     of_table = next(iter(log.channels.values())).time
     if log.table and wanted.every is None:
-        time = of_table[np.isfinite(of_table) & (of_table >= first) & (of_table <= last)]
+        inside = np.isfinite(of_table) & (of_table >= first) & (of_table <= last)
+        time = of_table if inside.all() else of_table[inside]
     else:
         leading = motion or traces
         first = max(first, min(float(each.time[0]) for each in leading.values()))
@@ -212,8 +227,9 @@ def _complete_motion(
     if not all(names[port] in signals for port in needed):
         return
     lacking = [port for port in _AXES if names[port] not in signals]
+    zero = np.zeros(rows)
     for port in lacking:
-        signals[names[port]] = np.zeros(rows)
+        signals[names[port]] = zero
         units[names[port]] = "m" if port.startswith("position") else "rad"
     if lacking:
         notes.append(f"{', '.join(_AXES[port] for port in lacking)}: not in the log, taken as 0")
@@ -242,18 +258,29 @@ def write_run(
     criteria: Sequence[tuple[str, str]] = (),
     outline: Outline | None = None,
     progress: Callable[[float], None] = lambda _: None,
-) -> dict[str, Any]:
-    """Write a log as a run folder, whose manifest is there already, empty; return the manifest.
+) -> Run:
+    """Write a log as a run folder, whose manifest is there already, empty; return it as read.
 
     ``progress`` is called with the share of rows that are written. Raises OSError with the name of
     a file that cannot be.
     """
     content = _manifest(found, format_name, criteria, outline)
+    verdicts = verdicts_of(found, criteria)
     _write_signals(found, folder / SIGNALS, progress)
-    write_json(folder / VERDICTS, verdicts_of(found, criteria))
+    write_json(folder / VERDICTS, verdicts)
     write_json(folder / TIMING, {})
     write_json(folder / MANIFEST, content)
-    return content
+    return Run(
+        folder=folder,
+        time=found.time,
+        signals=dict(found.signals),
+        units=dict(found.units),
+        manifest=content,
+        verdicts=read_verdicts(folder),
+        timing={},
+        truncated=False,
+        notes=(),
+    )
 
 
 def verdicts_of(found: Imported, criteria: Sequence[tuple[str, str]]) -> list[dict[str, Any]]:
@@ -289,7 +316,7 @@ def _write_signals(found: Imported, path: Path, progress: Callable[[float], None
 def _manifest(
     found: Imported, format_name: str, criteria: Sequence[tuple[str, str]], outline: Outline | None
 ) -> dict[str, Any]:
-    path = found.log.path
+    path = found.path
     file = {"name": path.stem, "file": path.name, "sha256": content_hash(path)}
     title = f"{path.name}, {FORMATS.load(format_name).title}"
     steps = np.diff(found.time)
@@ -301,7 +328,7 @@ def _manifest(
         component["outline"] = {"length": outline.length, "beam": outline.beam}
     if found.home is not None:
         component["home"] = list(found.home)
-    start = found.log.start
+    start = found.start
     return {
         "format": 1,
         "seatrial": __version__,
