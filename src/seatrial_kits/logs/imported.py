@@ -6,7 +6,7 @@ import csv
 import hashlib
 import io
 import json
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Container, Mapping, Sequence
 from dataclasses import asdict, dataclass, field
 from datetime import datetime
 from fnmatch import fnmatchcase
@@ -14,7 +14,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from seatrial import __version__
 from seatrial.errors import InputError, unmatched
@@ -35,6 +34,8 @@ from seatrial.trial.records.run_folder import (
     read_verdicts,
 )
 from seatrial.trial.running.output import write_json
+
+from .columns import Columns
 
 COMPONENT = "log"
 """The component that has all signals of a log."""
@@ -72,7 +73,7 @@ class Imported:
     start: datetime | None
     """Date and time of the time 0, where they are known."""
     time: Array
-    signals: Mapping[str, Array]
+    signals: Columns
     units: Mapping[str, str]
     switches: frozenset[str]
     """Signals that are true or false."""
@@ -101,20 +102,16 @@ def imported(log: Log, wanted: Wanted) -> Imported:
     if not traces:
         raise InputError(f"{log.path}: no channel with a number in it")
     time = _axis(log, traces, motion, wanted)
-    signals, units, unknown = {}, {}, {}
-    for name, each in traces.items():
-        # A column of a long table is in memory once: its own times need no look-up.
-        at_own = len(each.time) == len(time) and np.array_equal(each.time, time)
-        values, known = each.at(each.time if at_own else time)
-        signals[f"{COMPONENT}.{name}"], units[f"{COMPONENT}.{name}"] = values, each.unit
-        if not known.all():
-            unknown[name] = known
-    for name, known in unknown.items():
-        signal = f"{COMPONENT}.known.{name}"
-        signals[signal], units[signal] = known.astype(float), "1"
+    signals = Columns(time)
+    shares = {name: signals.add(f"{COMPONENT}.{name}", each) for name, each in traces.items()}
+    units = {f"{COMPONENT}.{name}": each.unit for name, each in traces.items()}
+    unknown = {name: share for name, share in shares.items() if share < 1.0}
+    for name in unknown:
+        signals.add_switch(f"{COMPONENT}.known.{name}", traces[name])
+        units[f"{COMPONENT}.known.{name}"] = "1"
     if unknown:
         notes.append(_unknown_note(unknown))
-    _complete_motion(signals, units, len(time), notes)
+    _complete_motion(signals, units, notes)
     switches = frozenset(f"{COMPONENT}.known.{name}" for name in unknown)
     serves = _serves(log, wanted.columns, signals)
     return Imported(
@@ -208,36 +205,30 @@ def _axis(
     return time
 
 
-def _unknown_note(unknown: Mapping[str, NDArray[np.bool_]]) -> str:
-    shares = sorted(unknown, key=lambda name: float(np.mean(unknown[name])))
+def _unknown_note(unknown: Mapping[str, float]) -> str:
+    shares = sorted(unknown, key=lambda name: unknown[name])
     worst = ", ".join(
-        f"{name} in {100.0 * (1.0 - float(np.mean(unknown[name]))):.3g} % of the rows"
-        for name in shares[:4]
+        f"{name} in {100.0 * (1.0 - unknown[name]):.3g} % of the rows" for name in shares[:4]
     )
     more = f", and {len(shares) - 4} more channels" if len(shares) > 4 else ""
     return f"not known, with the nearest earlier value: {worst}{more}; see the signals log.known.*"
 
 
-def _complete_motion(
-    signals: dict[str, Array], units: dict[str, str], rows: int, notes: list[str]
-) -> None:
+def _complete_motion(signals: Columns, units: dict[str, str], notes: list[str]) -> None:
     """Add angles and depth of 0 to a motion with position and heading, which a craft has."""
     names = {port: f"{COMPONENT}.{port}" for port in _AXES}
     needed = ("position.x", "position.y", "attitude.psi")
     if not all(names[port] in signals for port in needed):
         return
     lacking = [port for port in _AXES if names[port] not in signals]
-    zero = np.zeros(rows)
     for port in lacking:
-        signals[names[port]] = zero
+        signals.add_zero(names[port])
         units[names[port]] = "m" if port.startswith("position") else "rad"
     if lacking:
         notes.append(f"{', '.join(_AXES[port] for port in lacking)}: not in the log, taken as 0")
 
 
-def _serves(
-    log: Log, columns: Mapping[str, Column], signals: Mapping[str, Array]
-) -> dict[str, str]:
+def _serves(log: Log, columns: Mapping[str, Column], signals: Container[str]) -> dict[str, str]:
     """Return the signal that serves each quantity."""
     found = {}
     for what, column in {**defaults(log), **columns}.items():
@@ -273,7 +264,7 @@ def write_run(
     return Run(
         folder=folder,
         time=found.time,
-        signals=dict(found.signals),
+        signals=found.signals,
         units=dict(found.units),
         manifest=content,
         verdicts=read_verdicts(folder),
@@ -299,15 +290,14 @@ def _write_signals(found: Imported, path: Path, progress: Callable[[float], None
     """Write the rows, `_CHUNK` at a time, numbers so that they read back exactly."""
     with path.open("w", encoding="utf-8", newline="") as file:
         csv.writer(file, lineterminator="\n").writerow(["time", *found.signals])
-        columns = [
-            found.signals[name].astype(np.int64) if name in found.switches else found.signals[name]
-            for name in found.signals
-        ]
         for first in range(0, len(found.time), _CHUNK):
             rows = slice(first, first + _CHUNK)
             text = io.StringIO()
             writer = csv.writer(text, lineterminator="\n")
-            cells = [found.time[rows].tolist(), *(column[rows].tolist() for column in columns)]
+            cells = [found.time[rows].tolist()]
+            for name in found.signals:
+                column = found.signals.rows(name, rows)
+                cells.append((column.astype(int) if name in found.switches else column).tolist())
             writer.writerows(zip(*cells, strict=True))
             file.write(text.getvalue())
             progress(min(1.0, (first + _CHUNK) / len(found.time)))

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
 from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..criteria.expressions import FloatArray
 from ..records.run_folder import Run
@@ -22,21 +22,26 @@ def thinned(run: Run, most: int = MOST_ROWS) -> Run:
     greatest value of each signal stay, and the first and last of all. A run with text stays as it
     is: each change of a text counts.
     """
-    columns = run.signals
-    if len(run.time) <= most or any(isinstance(each, list) for each in columns.values()):
+    count = len(run.time)
+    if count <= most or any(isinstance(run.signals[name], list) for name in run.signals):
         return run
-    rows = _extremes(columns.values(), len(run.time), max((most - 2) // (2 * len(columns)), 1))
-    kept = {name: values[rows] for name, values in columns.items()}
+    edges = np.linspace(0, count, max((most - 2) // (2 * len(run.signals)), 1) + 1).astype(int)
+    # Signals one by one: those of a long log are not in memory together.
+    found = [
+        np.array([0, count - 1]),
+        *(_extremes(run.signals[name], edges) for name in run.signals),
+    ]
+    rows = np.unique(np.concatenate(found))
+    kept = {name: run.signals[name][rows] for name in run.signals}
     return replace(run, time=run.time[rows], signals=kept)
 
 
-def _extremes(columns: Collection[FloatArray], count: int, stretches: int) -> FloatArray:
-    found = [np.array([0, count - 1])]
-    edges = np.linspace(0, count, stretches + 1).astype(int)
-    for first, last in pairwise(edges):
-        for values in columns:
-            part = values[first:last]
-            known = np.flatnonzero(~np.isnan(part))
-            if len(known):
-                found.append(first + known[[part[known].argmin(), part[known].argmax()]])
-    return np.unique(np.concatenate(found))
+def _extremes(values: FloatArray, edges: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Return the rows of the least and the greatest number of each stretch."""
+    found = []
+    for first, last in pairwise(edges.tolist()):
+        known = np.flatnonzero(~np.isnan(values[first:last])) + first
+        if len(known):
+            part = values[known]
+            found += [known[part.argmin()], known[part.argmax()]]
+    return np.array(found, np.int64)
