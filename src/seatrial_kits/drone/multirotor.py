@@ -13,8 +13,9 @@ from seatrial.model.component import Input, Parameter, terminal
 from seatrial.model.plant import Plant, State
 from seatrial.model.ports import Output
 from seatrial.model.terminals import MOTION
-from seatrial.physics.craft.legs import Legs, inside
 from seatrial.physics.craft.symbolic import rotation_matrix
+
+from .legs import Legs, inside
 
 ROTORS = ("r1", "r2", "r3", "r4")
 PLACES = ((1, 1), (-1, -1), (1, -1), (-1, 1))
