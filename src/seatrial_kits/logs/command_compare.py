@@ -7,7 +7,6 @@ from pathlib import Path
 from rich.markup import escape
 
 from seatrial.cli.answer import answer
-from seatrial.cli.reading import reading
 from seatrial.cli.show import console, print_notes, print_table, text_table
 from seatrial.trial.logs.formats import read_log
 from seatrial.trial.logs.quantities import read_columns
@@ -16,6 +15,7 @@ from seatrial.trial.records.run_folder import load_run
 from .paired.pairing import pairs, read_matches
 from .paired.residuals import HEADINGS, resampling_notes, residual_of
 from .paired.steady_clock import steady
+from .reading import reading
 
 
 def compare_with_log(
