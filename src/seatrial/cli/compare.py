@@ -73,18 +73,20 @@ def _compare_with_log(
     folder: Path, path: Path, match: list[str], columns: list[str], format_name: str | None
 ) -> None:
     from ..trial.logs.formats import read_log
-    from ..trial.logs.pairing import pairs, read_matches
+    from ..trial.logs.pairing import compared_signals, pairs, read_matches
     from ..trial.logs.quantities import read_columns
     from ..trial.logs.residuals import HEADINGS, resampling_notes, residual_of
     from ..trial.logs.steady_clock import steady
-    from ..trial.records.run_folder import load_run
+    from ..trial.records.run_folder import load_run, read_manifest
     from .reading import reading
     from .show import text_table
 
     matches, named = read_matches(match, "--match"), read_columns(columns) if columns else {}
-    run = load_run(folder)
+    described = read_manifest(folder)["signals"].items()
+    numbers = [name for name, each in described if each.get("type") not in ("String", "Binary")]
     with reading(path):
         log = steady(read_log(path, format_name, named.pop("time", None)))
+    run = load_run(folder, compared_signals(numbers, log, matches))
     found, notes = pairs(run, log, matches, named)
     residuals = [residual_of(signal, channel) for signal, channel in found]
     residuals.sort(key=lambda each: 1.0 if each.fit is None else each.fit)
