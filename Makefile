@@ -34,7 +34,7 @@ $(INSTALLED): pyproject.toml
 demo: $(INSTALLED)
 	@echo "== a drone lands on the aft port corner of a catamaran that holds its station"
 	@$(BIN)/seatrial run hydrone-landing
-	@echo "== all five landing points, landing and take-off"
+	@echo "== all five landing points, landing and take-off: six cases off the centre line FAIL, as in the published work"
 	@$(BIN)/seatrial run hydrone-pads || test $$? -eq 1
 	@echo "Open the two reports in a browser: each plays its run. The landing with time line, map and charts:"
 	@run=$$(ls -td runs/hydrone-landing-* | head -n 1); echo "$$run/report.html"; \
@@ -127,7 +127,8 @@ release: docs $(TOOLS)/.installed
 	$(BIN)/python -m pip freeze --exclude-editable > $(RELEASE)/tested.txt
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --dry-run --ignore-installed --no-deps \
 		--report $(RELEASE)/report.json --requirement $(RELEASE)/tested.txt
-	$(BIN)/python -c 'import json, sys; [print(one["metadata"]["name"], "==", one["metadata"]["version"], \
+	$(BIN)/python -c 'import json, sys; print("# pip install --require-hashes --no-deps -r seatrial.lock"); \
+		[print(one["metadata"]["name"], "==", one["metadata"]["version"], \
 		" --hash=sha256:", one["download_info"]["archive_info"]["hashes"]["sha256"], sep="") \
 		for one in json.load(sys.stdin)["install"]]' < $(RELEASE)/report.json > $(RELEASE)/seatrial.lock
 	$(TOOLS)/bin/cyclonedx-py environment --pyproject pyproject.toml --mc-type library --output-reproducible \

@@ -2,7 +2,7 @@
 
 An implicit step is measured beside one evaluation of the right-hand side that an explicit method
 would need, in turn, for some rounds. Ratios are those of one round; the median over the rounds and
-their range are shown. ``--write`` puts the table into docs/vehicles/tether.md.
+their range are shown. ``--write`` puts the table into docs/kits/videoray/tether.md.
 """
 
 from __future__ import annotations
@@ -15,11 +15,11 @@ from collections.abc import Callable
 
 import numpy as np
 
-from seatrial.physics.cable.cable import Cable
-from seatrial.physics.cable.cable_shape import static_shape
-from seatrial.physics.cable.cable_solver import Chain, implicit_step
-from seatrial.physics.cable.tether import Tether
 from seatrial.system.parameters import load_vehicle
+from seatrial_kits.videoray.cable.cable import Cable
+from seatrial_kits.videoray.cable.cable_shape import static_shape
+from seatrial_kits.videoray.cable.cable_solver import Chain, implicit_step
+from seatrial_kits.videoray.cable.tether import Tether
 
 from .pages import write_measured
 
@@ -100,7 +100,7 @@ def main() -> None:
     text += table(options.rounds, options.steps)
     print(text)
     if options.write:
-        write_measured("vehicles/tether.md", text)
+        write_measured("kits/videoray/tether.md", text)
 
 
 if __name__ == "__main__":

@@ -67,8 +67,8 @@ LONG = {
     KITS / "identify/from-trials.md",
     HOW_TO / "decide-with-campaigns.md",
     DOCS / "vehicles/guidance.md",
-    DOCS / "vehicles/remus100.md",
-    DOCS / "vehicles/supply-ship.md",
+    DOCS / "kits/fitted/remus100.md",
+    DOCS / "kits/fitted/supply-ship.md",
     HOW_TO / "new-vehicle.md",
     HOW_TO / "own-vehicle.md",
     HOW_TO / "shadow.md",
@@ -312,7 +312,7 @@ def test_every_top_level_key_of_the_shipped_files_is_in_its_page() -> None:
             for key in tomllib.loads(path.read_text("utf-8")):
                 assert f"`{key}`" in text, f"{path}: {key}"
     text = (REFERENCE / "profile-keys.md").read_text("utf-8")
-    for path in (ROOT / "hil_profiles").glob("*.toml"):
+    for path in [p for folder in provided_folders("hil_profiles") for p in folder.glob("*.toml")]:
         for key in tomllib.loads(path.read_text("utf-8")):
             assert f"`{key}`" in text, f"{path}: {key}"
 

@@ -30,7 +30,7 @@ def test_the_wheel_alone_runs_a_trial(downloads: bool, tmp_path: Path) -> None:
         "harness/vehicles/hydrone/vehicle.toml",
         "harness/vehicles/hydrone/pilot.toml",
         "hil_profiles/hydrone.toml",
-        "harness/vehicles/tether/vehicle.toml",
+        "harness/kits/videoray/vehicles/tether/vehicle.toml",
     ):
         assert f"seatrial/_shipped/{shipped}" in names
     for name in (

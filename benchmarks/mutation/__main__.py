@@ -24,13 +24,16 @@ from pathlib import Path
 import coverage
 from scipy.stats import binomtest
 
-from .copies import BUILD, COPY, LOG, PACKAGES, begin, copied, forked, mutated, tests
+from .copies import BUILD, COPY, KITS, LOG, PACKAGES, begin, copied, forked, mutated, tests
 from .operators import Mutant, mutants
 
 SCOPE = tuple(f"src/{name.replace('.', '/')}" for name in PACKAGES)
 TESTS = tuple(
     f"tests/{name}"
-    for name in ("base", "control", "craft", "devices", "environment", "sea", "seabed")
+    for name in (
+        *("base", "control", "craft", "devices", "environment", "sea"),
+        *(f"kits/{kit}" for kit in KITS),
+    )
 )
 SLOWEST = 180
 """Seconds of processor beyond which a test file is left out."""

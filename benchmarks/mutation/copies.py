@@ -18,7 +18,12 @@ from .operators import Mutant
 ROOT = Path(__file__).parents[2]
 BUILD = ROOT / "build" / "mutation"
 COPY = BUILD / "copy"
-PACKAGES = tuple(f"seatrial.{name}" for name in ("physics", "devices", "control"))
+KITS = ("drone", "fitted", "sailing", "ships", "underwater", "videoray")
+"""Kits with equations."""
+PACKAGES = (
+    *(f"seatrial.{name}" for name in ("physics", "devices", "control")),
+    *(f"seatrial_kits.{name}" for name in KITS),
+)
 """Where mutants are made."""
 LIBRARIES = ("casadi", "hypothesis", "lxml.etree", "pint", "pydantic", "pytest", "scipy.optimize")
 LOG = BUILD / "tests.log"

@@ -9,7 +9,7 @@ import cantools
 from parts import part
 from parts.can import ports
 from parts.markdown import table
-from seatrial.shipped import shipped_folder
+from seatrial.shipped import provided_folders
 from seatrial_kits.can.signals.component import CanSignals
 
 part("can-signals-ports")(partial(ports, CanSignals))
@@ -19,7 +19,9 @@ part("can-signals-ports")(partial(ports, CanSignals))
 def messages() -> str:
     """Messages of the shipped DBC files."""
     rows = []
-    for path in sorted(shipped_folder("hil_profiles").glob("*.dbc")):
+    for path in sorted(
+        path for folder in provided_folders("hil_profiles") for path in folder.glob("*.dbc")
+    ):
         for message in cantools.database.load_file(path).messages:
             signals = ", ".join(
                 f"`{s.name}` {s.minimum:g} to {s.maximum:g} {s.unit} by {s.scale:g}"

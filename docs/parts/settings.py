@@ -9,7 +9,7 @@ from parts import part
 from parts.markdown import shown_unit, shown_value, table
 from seatrial.fmi.components.source import shipped_sources
 from seatrial.model.ports import Parameter
-from seatrial.shipped import shipped_folder
+from seatrial.shipped import available
 from seatrial.system.parameters import load_vehicle
 from seatrial.system.profile.kinds import keys
 from seatrial.system.references.entries import Resolved
@@ -17,7 +17,12 @@ from seatrial.system.references.entries import Resolved
 _SENSORS = ("ahrs", "anemometer", "compass", "depth", "gnss", "imu")
 _OF_LINKS = ("arduino", "ardupilot", "can", "gprs", "mavlink", "nmea", "px4", "videoray")
 _PACKAGES = ("seatrial.links.", *(f"seatrial_kits.{kit}." for kit in _OF_LINKS))
-_LINKS = [n for n, s in shipped_sources().items() if s.module.startswith(_PACKAGES)]
+_VEHICLE = tuple(f"seatrial_kits.videoray.{name}." for name in ("cable", "tracking", "vessel"))
+_LINKS = [
+    name
+    for name, source in shipped_sources().items()
+    if source.module.startswith(_PACKAGES) and not source.module.startswith(_VEHICLE)
+]
 
 
 @part("sensor-keys")
@@ -145,7 +150,7 @@ part("supply-ship-parameters")(partial(parameters, "supply-ship"))
 
 def sensors_of(profile: str) -> str:
     """Sensors of a profile, as its file has them."""
-    path = shipped_folder("hil_profiles") / f"{profile}.toml"
+    path = available("hil_profiles")[profile]
     sensors = tomllib.loads(path.read_text("utf-8"))["sensors"]
     rows = []
     for name, entries in sensors.items():

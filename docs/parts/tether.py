@@ -16,11 +16,11 @@ from parts.markdown import table
 from parts.settings import parameters
 from parts.ships import verdicts
 from seatrial.model.units import quantity
-from seatrial.physics.cable.cable import Cable
-from seatrial.physics.cable.cable_shape import hanging_shape, static_shape
-from seatrial.physics.cable.cable_solver import Chain, implicit_step
-from seatrial.physics.cable.tether import Tether
 from seatrial.system.parameters import load_vehicle
+from seatrial_kits.videoray.cable.cable import Cable
+from seatrial_kits.videoray.cable.cable_shape import hanging_shape, static_shape
+from seatrial_kits.videoray.cable.cable_solver import Chain, implicit_step
+from seatrial_kits.videoray.cable.tether import Tether
 
 part("tether-parameters")(partial(parameters, "tether"))
 part("tether-trials")(partial(verdicts, "tether"))

@@ -119,6 +119,7 @@ def test_a_criterion_that_fails_is_status_one(tmp_path: Path) -> None:
             ["convergence", "hydrone-landing", "--halvings", "1"],
             "at least 2 are needed to see an order",
         ),
+        (["run", "otter", "--vehicle", "bluerov2"], "--vehicle names another one, 'bluerov2'"),
         (["report", "nowhere"], "nowhere"),
         (["compare", "nowhere", "neither"], "nowhere"),
         (["fmu", "build", "trhuster"], "did you mean 'thruster'"),

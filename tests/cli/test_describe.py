@@ -9,6 +9,7 @@ from tests.kit import needs_kits
 
 
 @pytest.mark.slow
+@needs_kits("videoray")
 def test_every_connection_is_shown_and_what_is_open(tmp_path) -> None:
     done = seatrial("describe", "sil", "--vehicle", "videoray", cwd=tmp_path)
     assert done.returncode == 0, done.stderr
@@ -24,7 +25,7 @@ def test_every_connection_is_shown_and_what_is_open(tmp_path) -> None:
 
 
 @pytest.mark.slow
-@needs_kits("mavlink")
+@needs_kits("mavlink", "ships")
 def test_a_trials_rig_is_described_with_its_choices(tmp_path) -> None:
     done = seatrial("describe", "mariner-mission", cwd=tmp_path)
     assert "vehicle = mariner" in done.stdout
@@ -32,10 +33,10 @@ def test_a_trials_rig_is_described_with_its_choices(tmp_path) -> None:
 
 
 def test_mistakes_have_near_misses(tmp_path) -> None:
-    done = seatrial("describe", "sil", "--vehicle", "glorai", cwd=tmp_path)
+    done = seatrial("describe", "sil", "--vehicle", "otetr", cwd=tmp_path)
     assert done.returncode == 2
-    assert "did you mean 'vehicles/gloria'" in done.stderr
-    done = seatrial("describe", "sil", "--choose", "vessel=gloria", cwd=tmp_path)
+    assert "did you mean 'vehicles/otter'" in done.stderr
+    done = seatrial("describe", "sil", "--choose", "vessel=otter", cwd=tmp_path)
     assert "unknown choice 'vessel'" in done.stderr
     (tmp_path / "mine.toml").write_text(
         'rig = "sil"\nstop = "1 s"\nchoices = { vehicle = "hydrona" }\n'
@@ -46,10 +47,8 @@ def test_mistakes_have_near_misses(tmp_path) -> None:
 
 @pytest.mark.slow
 def test_a_part_of_a_rig_is_described_alone(tmp_path) -> None:
-    done = seatrial("describe", "vehicles/mariner", cwd=tmp_path)
+    done = seatrial("describe", "vehicles/otter", cwd=tmp_path)
     assert done.returncode == 0, done.stderr
-    assert ["machine.angle", "->", "ship.rudder"] in [
-        line.split() for line in done.stdout.splitlines()
-    ]
-    done = seatrial("describe", "vehicles/marine", cwd=tmp_path)
-    assert "did you mean 'vehicles/mariner'" in done.stderr
+    assert ["hull.rates", "->", "gnss.rates"] in [line.split() for line in done.stdout.splitlines()]
+    done = seatrial("describe", "vehicles/oter", cwd=tmp_path)
+    assert "did you mean 'vehicles/otter'" in done.stderr

@@ -91,7 +91,7 @@ def test_describe_shows_every_parameter_of_every_table(name: str, tmp_path: Path
             assert [line.split()[0] for line in shown[first:]] == list(keys(group, kind))
 
 
-@needs_kits(*OF_PROFILES)
+@needs_kits(*OF_PROFILES, "ships")
 def test_describe_shows_what_a_ground_station_tunes(tmp_path: Path) -> None:
     done = seatrial("profile", "describe", "mariner", cwd=tmp_path)
     shown = [line.split() for line in rows(done.stdout, "tunables of links.ground")]

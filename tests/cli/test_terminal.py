@@ -20,6 +20,7 @@ EVIL = "\x1b]0;gone\x07\x1b[2J\r\x08\x7f\x9b31m\u202edrawkcab\u2066\u2028\x85"
 """Titles and clears the terminal, overwrites the line, turns the text round."""
 ACTS = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u200e\u200f\u2028-\u202e\u2066-\u2069]")
 ROOT = Path(__file__).parents[2]
+PROFILES = ROOT / "harness/kits/ships/profiles"
 TOML = json.dumps(EVIL)  # TOML's escapes are those of JSON
 DESCRIPTION = """<?xml version="1.0" encoding="UTF-8"?>
 <fmiModelDescription fmiVersion="2.0" modelName="a&#x202e;b&#x9b;2J" guid="{}" description="&#x9b;2J&#x202e;x">
@@ -67,14 +68,15 @@ def test_titles_in_listings(tmp_path: Path) -> None:
     assert_harmless(seatrial("list", cwd=tmp_path))
 
 
-@needs_kits("mavlink", "nmea")
+@needs_kits("mavlink", "nmea", "ships")
 def test_a_profile_of_others(tmp_path: Path) -> None:
-    text = (ROOT / "hil_profiles" / "mariner.toml").read_text("utf-8")
+    text = (PROFILES / "mariner.toml").read_text("utf-8")
+    text = text.replace("../../../ships/", "../harness/ships/")
     text = re.sub(r"^(title|source) = .*$", lambda m: f"{m[1]} = {TOML}", text, flags=re.M)
     folder = tmp_path / "hil_profiles"
     folder.mkdir()
     (folder / "x.toml").write_text(text)
-    shutil.copy(ROOT / "hil_profiles" / "mariner.parm", folder)
+    shutil.copy(PROFILES / "mariner.parm", folder)
     shutil.copytree(ROOT / "harness" / "ships", tmp_path / "harness" / "ships")
     done = seatrial("profile", "describe", "hil_profiles/x.toml", cwd=tmp_path)
     assert done.returncode == 0, done

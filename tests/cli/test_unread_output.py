@@ -23,7 +23,7 @@ COMMANDS = [
     (["--help"], 0),
     (["list"], 0),
     (["profile", "check", "videoray"], 0),
-    (["profile", "describe", "gloria"], 0),
+    (["profile", "describe", "otter"], 0),
     (["sketch", "check", GLORIA, "--profile", "gloria:mega"], 0),
     (["decode", "videoray", "one.stream"], 0),
     (["decode", "videoray", "none.stream"], 2),
@@ -49,7 +49,7 @@ os.write(2, b"statuses:" + json.dumps(found).encode())
 
 
 @pytest.mark.slow
-@needs_kits(*OF_PROFILES)
+@needs_kits(*OF_PROFILES, "sailing")
 @pytest.mark.parametrize("buffered", [True, False])
 def test_a_reader_that_is_gone_changes_no_status(buffered: bool, tmp_path: Path) -> None:
     (tmp_path / "one.stream").write_text(STREAM)

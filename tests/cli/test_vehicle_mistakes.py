@@ -8,6 +8,9 @@ from seatrial.system.assembling.assembly import assemble
 from seatrial.system.assembling.fitted_parts import forgotten, vacant
 from seatrial.system.flattening import load_rig
 from tests.command import seatrial
+from tests.kit import needs_kits
+
+pytestmark = needs_kits("fitted")
 
 VEHICLE, PILOT = "harness/vehicles/tuna/vehicle.toml", "harness/vehicles/tuna/pilot.toml"
 PROFILE = "hil_profiles/tuna.toml"

@@ -1,5 +1,4 @@
 import math
-from pathlib import Path
 
 import pytest
 
@@ -7,6 +6,7 @@ from seatrial.devices.actuators.servo import Servo
 from seatrial.devices.actuators.thruster import Thruster
 from seatrial.errors import InputError
 from seatrial.fmi.components.index import component_class
+from seatrial.shipped import provided_folders
 from seatrial.system.profile.profile import Profiles, check_profile, load_profile
 from tests.kit import OF_PROFILES, needs_kits
 
@@ -352,7 +352,9 @@ def test_file_that_is_not_there():
 # ------------------------------------------------------------------ shipped
 
 
-SHIPPED = sorted((Path(__file__).parents[2] / "hil_profiles").glob("*.toml"))
+SHIPPED = sorted(
+    path for folder in provided_folders("hil_profiles") for path in folder.glob("*.toml")
+)
 
 
 @needs_kits(*OF_PROFILES)
@@ -380,8 +382,8 @@ def test_sections_are_found_in_the_rigs_profile_or_in_the_one_they_name(write):
     profiles = Profiles("hydrone", write("rig.toml", "").parent)
     own, section = profiles.find("sensors.gnss", "here")
     assert (own.read_from.name, section) == ("hydrone", "sensors.gnss")
-    other, section = profiles.find("gloria:sensors.gnss", "here")
-    assert (other.read_from.name, section) == ("gloria", "sensors.gnss")
+    other, section = profiles.find("bluerov2:sensors.depth", "here")
+    assert (other.read_from.name, section) == ("bluerov2", "sensors.depth")
     with pytest.raises(InputError, match="here: the rig names no profile"):
         Profiles(None, write("rig.toml", "").parent).find("sensors.gnss", "here")
 

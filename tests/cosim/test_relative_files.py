@@ -7,6 +7,7 @@ from seatrial.system.flattening import load_rig
 from seatrial.trial.files.trial import load_trial
 from seatrial.trial.running.preparation import prepare
 from seatrial.trial.running.run import Hooks
+from tests.kit import needs_kits
 
 GRID = "north,east,depth\n0,0,5\n0,9,5\n9,0,5\n9,9,5\n"
 RIG = 'step = "10 ms"\n[components]\nsounder = {{ fmu = "echo-sounder"{} }}\n'
@@ -33,6 +34,7 @@ def depth_file(system):
         system.free()
 
 
+@needs_kits("underwater")
 @pytest.mark.parametrize("said", [', set = { seabed_file = "bed.csv" }', ', parameters = "v.toml"'])
 def test_of_a_rig_and_of_a_vehicle_file(elsewhere, said):
     (elsewhere / "v.toml").write_text(VEHICLE, "utf-8")
@@ -41,6 +43,7 @@ def test_of_a_rig_and_of_a_vehicle_file(elsewhere, said):
     assert found == str(elsewhere / "bed.csv")
 
 
+@needs_kits("underwater")
 def test_of_a_trial(elsewhere):
     (elsewhere / "r.toml").write_text(RIG.format(""), "utf-8")
     trial = 'rig = "r.toml"\nstop = "1 s"\n[set]\n"sounder.seabed_file" = "bed.csv"\n'
@@ -49,6 +52,7 @@ def test_of_a_trial(elsewhere):
     assert depth_file(prepared.system) == str(elsewhere / "bed.csv")
 
 
+@needs_kits("underwater")
 def test_else_to_where_the_run_begins(elsewhere):
     (elsewhere / "bed.csv").rename(elsewhere.parent / "away/bed.csv")
     (elsewhere / "r.toml").write_text(RIG.format(', set = { seabed_file = "bed.csv" }'), "utf-8")

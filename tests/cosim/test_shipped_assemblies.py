@@ -15,7 +15,7 @@ from seatrial.system.references.values import port_scalars
 from seatrial.system.system import System
 from tests.kit import needs_kits
 
-pytestmark = needs_kits("arduino", "mavlink", "nmea", "videoray")
+pytestmark = needs_kits("arduino", "fitted", "mavlink", "nmea", "sailing", "ships", "videoray")
 
 BY_HAND = Path(__file__).parents[1] / "reference" / "connections"
 RENAMED = {

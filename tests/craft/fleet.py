@@ -2,27 +2,24 @@
 
 import numpy as np
 
+from seatrial.fmi.components.index import component_class
 from seatrial.fmi.direct import DirectInstance
-from seatrial.physics.craft.manoeuvring_ship import ManoeuvringShip
-from seatrial.physics.craft.marine_craft import MarineCraft
-from seatrial.physics.craft.rov import Rov
-from seatrial.physics.craft.sailboat import Sailboat
-from seatrial.physics.craft.surface_vessel import SurfaceVessel
-from seatrial.physics.craft.thruster_ship import ThrusterShip
-from seatrial.physics.parts.mmg_ship import MmgShip
 from seatrial.system.parameters import load_vehicle
 from seatrial.system.references.values import from_entry, port_scalars
+from tests.kit import vehicles
 
-FLEET = {
-    "hydrone": ("marine-craft", MarineCraft),
-    "otter": ("marine-craft", MarineCraft),
-    "mariner": ("manoeuvring-ship", ManoeuvringShip),
-    "kvlcc2": ("mmg-ship", MmgShip),
-    "thruster-ship": ("thruster-ship", ThrusterShip),
-    "gloria": ("sailboat", Sailboat),
-    "videoray": ("rov", Rov),
-    "videoray-surface": ("surface-vessel", SurfaceVessel),
+TABLES = {
+    "hydrone": "marine-craft",
+    "otter": "marine-craft",
+    "mariner": "manoeuvring-ship",
+    "kvlcc2": "mmg-ship",
+    "thruster-ship": "thruster-ship",
+    "gloria": "sailboat",
+    "videoray": "rov",
+    "videoray-surface": "surface-vessel",
 }
+FLEET = {name: (TABLES[name], component_class(TABLES[name])) for name in vehicles(*TABLES)}
+"""Component and class of each vehicle whose kit is here."""
 
 
 def craft(vehicle, variant=None, **changes):

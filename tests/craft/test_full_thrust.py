@@ -6,6 +6,8 @@ import math
 import numpy as np
 import pytest
 
+from tests.kit import needs_kits
+
 from .references import shipped
 
 STEP = 0.1
@@ -74,6 +76,7 @@ def test_its_published_set_turns_over():
     assert tilt > UPRIGHT
 
 
+@needs_kits("videoray")
 @pytest.mark.parametrize("orders", [(1, 1, 0), (1, 1, 1), (1, 1, -1), (1, -1, 0), (1, 0, 1)])
 def test_the_videoray_keeps_upright(orders):
     tilt, speed = driven(videoray(None, *orders), 30)

@@ -12,9 +12,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tests.craft.fleet import FLEET, craft
+from tests.kit import vehicles
 
 DURATION = 1.0
-CRAFT = [name for name in FLEET if name not in ("gloria", "mariner")] + ["mariner cubic"]
+CRAFT = [name for name in FLEET if name not in ("gloria", "mariner")]
+CRAFT += [f"{name} cubic" for name in vehicles("mariner")]
 
 
 def moved(name, orders, water, h):
@@ -79,7 +81,7 @@ def test_motion_through_the_water_does_not_know_of_the_current(name, orders, wat
     assert off(name, orders, water, 2e-3) < 1e-9
 
 
-@pytest.mark.parametrize("name", ["otter", "videoray", "hydrone"])
+@pytest.mark.parametrize("name", vehicles("otter", "videoray", "hydrone"))
 def test_what_is_left_falls_at_least_with_the_fourth_power_of_the_step(name):
     orders = [0.7, -0.3, 0.1, 0.2, -0.1, 0.9]
     coarse, fine = (off(name, orders, (0.6, -0.8), h) for h in (0.01, 0.005))

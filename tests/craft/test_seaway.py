@@ -8,12 +8,9 @@ import numpy as np
 import pytest
 
 from seatrial.errors import InputError
-from seatrial.physics.craft.manoeuvring_ship import ManoeuvringShip
 from seatrial.physics.craft.marine_craft import MarineCraft
 from seatrial.physics.craft.rov import Rov
-from seatrial.physics.craft.surface_vessel import SurfaceVessel
-from seatrial.physics.craft.thruster_ship import ThrusterShip
-from seatrial.physics.parts.mmg_ship import MmgShip
+from tests.kit import classes, vehicles
 from tests.sea.references import content, table
 
 from .fleet import FLEET, craft, states
@@ -63,7 +60,7 @@ def barge(**changes):
     return craft
 
 
-@pytest.mark.parametrize("vehicle", CALM)
+@pytest.mark.parametrize("vehicle", vehicles(*CALM))
 def test_without_a_sea_a_craft_moves_as_it_did_before_there_was_one(vehicle):
     # The recorded thruster ship had no drag.
     variant = "published" if vehicle == "thruster-ship" else None
@@ -134,7 +131,7 @@ TURNING = {
 }
 
 
-@pytest.mark.parametrize("vehicle", TURNING)
+@pytest.mark.parametrize("vehicle", vehicles(*TURNING))
 def test_a_current_carries_a_turning_craft_as_if_it_stood_still(vehicle):
     name, start, changes = TURNING[vehicle]
     stream = 0.5 * np.array([math.cos(0.6), math.sin(0.6)])
@@ -193,7 +190,9 @@ def test_error_between_evaluations_is_that_of_a_cubic(h):
         assert (off[[2, 4]] > 0.5 * bound * largest[[2, 4]]).all()
 
 
-@pytest.mark.parametrize("kind", [ManoeuvringShip, MmgShip, ThrusterShip, SurfaceVessel])
+@pytest.mark.parametrize(
+    "kind", classes("manoeuvring-ship", "mmg-ship", "thruster-ship", "surface-vessel")
+)
 def test_a_long_following_sea_pushes_a_hull_as_the_water_that_it_displaces(kind):
     hull, heading, omega = kind("boat"), 2.2, 0.3
     values = {"sea_period": math.tau / omega, "sea_direction": heading, "hull_length": 2.0}
@@ -266,7 +265,7 @@ def test_sections_of_another_waterplane_are_refused():
 
 
 def test_ships_are_pushed_by_the_wind():
-    for vehicle in ("hydrone", "mariner", "kvlcc2", "thruster-ship"):
+    for vehicle in vehicles("hydrone", "mariner", "kvlcc2", "thruster-ship"):
         hull = craft(vehicle, wind_speed=15.0, wind_direction=math.pi / 2)
         calm = craft(vehicle)
         pushed, still = states(hull, 20.0, 0.1), states(calm, 20.0, 0.1)

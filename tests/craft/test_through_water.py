@@ -9,6 +9,7 @@ from scipy.spatial.transform import Rotation
 from seatrial.devices.speed_log import SpeedLog
 from tests.craft.fleet import FLEET, craft
 from tests.devices.ideal import ideal
+from tests.kit import needs_kits
 
 PLACE = np.array([0.7, -0.2, 0.4])
 SPEED, DIRECTION = 0.8, 2.3
@@ -51,6 +52,7 @@ def test_the_flow_at_a_place_has_what_the_turning_adds(vehicle):
     np.testing.assert_allclose(made.get("flow"), expected, atol=1e-12)
 
 
+@needs_kits("videoray")
 def test_the_flow_at_a_place_has_the_shear_of_the_current():
     # At the start: later the craft's depth, where the current is looked up, is extrapolated.
     start = {

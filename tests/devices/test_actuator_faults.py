@@ -7,28 +7,29 @@ import pytest
 
 from seatrial.devices.actuators.actuator import INTERVAL_NS, LATE_NS
 from seatrial.devices.actuators.angle_servo import AngleServo
-from seatrial.devices.actuators.force_actuator import ForceActuator
-from seatrial.devices.actuators.linear_thruster import LinearThruster
 from seatrial.devices.actuators.motor import Motor
-from seatrial.devices.actuators.rudder_machine import RudderMachine
 from seatrial.devices.actuators.servo import Servo
 from seatrial.devices.actuators.thruster import Thruster
 from seatrial.errors import InputError, SimulationError
 from seatrial.model.faults.catalogue import FAILURES as FAULTS
+from seatrial_kits.ships.devices.force_actuator import ForceActuator
+from seatrial_kits.ships.devices.rudder_machine import RudderMachine
+from tests.kit import classes
 
 from .running import run, started
 
-ALL = {
-    Thruster: ("pulse", lambda x: 1.5e-3 + 0.4e-3 * x, "thrust"),
-    LinearThruster: ("command", lambda x: x, "thrust"),
-    Motor: ("command", lambda x: x, "order"),
-    ForceActuator: ("demand", lambda x: [1e5 * x, -1e5 * x, 1e6 * x], "force.x"),
-    Servo: ("pulse", lambda x: 1.5e-3 + 0.4e-3 * x, "angle"),
-    AngleServo: ("command", lambda x: x, "angle"),
-    RudderMachine: ("command", lambda x: 0.5 * x, "angle"),
+WANTED = {
+    "thruster": ("pulse", lambda x: 1.5e-3 + 0.4e-3 * x, "thrust"),
+    "linear-thruster": ("command", lambda x: x, "thrust"),
+    "motor": ("command", lambda x: x, "order"),
+    "force-actuator": ("demand", lambda x: [1e5 * x, -1e5 * x, 1e6 * x], "force.x"),
+    "servo": ("pulse", lambda x: 1.5e-3 + 0.4e-3 * x, "angle"),
+    "angle-servo": ("command", lambda x: x, "angle"),
+    "rudder-machine": ("command", lambda x: 0.5 * x, "angle"),
 }
-THRUSTERS = (Thruster, LinearThruster, Motor, ForceActuator)
-SHAFTS = (Servo, AngleServo, RudderMachine)
+ALL = {cls: wanted for name, wanted in WANTED.items() for cls in classes(name)}
+THRUSTERS = classes("thruster", "linear-thruster", "motor", "force-actuator")
+SHAFTS = classes("servo", "angle-servo", "rudder-machine")
 BROKEN_MS, REPAIRED_MS = 6_000, 12_000
 
 
@@ -169,7 +170,7 @@ def test_delayed_follows_what_was_wanted_half_a_second_ago(cls):
     )
     # A frame may have begun with the command just before, so that a shaft is a frame behind.
     assert failed == pytest.approx(healthy, abs=0.1 * np.ptp(healthy))
-    if cls in (Thruster, LinearThruster):
+    if cls in classes("thruster", "linear-thruster"):
         inside = slice(BROKEN_MS // 10, (BROKEN_MS + late_ms) // 10 - 1)
         assert failed[inside] == pytest.approx(healthy[inside], rel=1e-12)
 

@@ -1,6 +1,7 @@
 """The attitude and acceleration of the VideoRay Pro 4 against [Paulino2015], table 7.1."""
 
 import math
+from functools import cache
 
 import numpy as np
 import pytest
@@ -11,20 +12,26 @@ from scipy.spatial.transform import Rotation
 from seatrial.devices.ahrs import Ahrs
 from seatrial.devices.depth import Depth
 from seatrial.system.profile.profile import load_profile
+from tests.kit import needs_kits
 
 from .running import run, started
 
 DEG = math.radians(1.0)
-PROFILE = load_profile("videoray")
 angles = st.tuples(st.floats(-3, 3), st.floats(-1.5, 1.5), st.floats(-9, 9))
 triples = st.tuples(*[st.floats(-10, 10)] * 3)
 ERRORS = ("euler_noise", "euler_resolution", "accelerometer_noise", "accelerometer_resolution")
 PERFECT = dict.fromkeys(ERRORS, 0.0)
+pytestmark = needs_kits("videoray")
+
+
+@cache
+def profile():
+    return load_profile("videoray")
 
 
 def readings(attitudes, **values):
     """Return (attitude, minus specific force), the signs of [Paulino2015], as read at 10 Hz."""
-    values = {**PROFILE.parameters("sensors.ahrs"), **values}
+    values = {**profile().parameters("sensors.ahrs"), **values}
     rows = run(
         started(Ahrs, **values),
         ["euler", "accelerometer"],
@@ -108,7 +115,7 @@ def test_a_dry_vehicle_reads_gravity_as_what_the_source_took_for_offsets():
     assert abs(v - DRY["v"][0]) < 1.7
     assert w == pytest.approx(987.4, rel=0.01)  # 978.8; the table's scale is 0.9 % high
     # Noise and quantum; one sample in 3 of pitch falls on the next tenth.
-    noise = np.array(PROFILE.parameters("sensors.ahrs")["euler_noise"]) / DEG
+    noise = np.array(profile().parameters("sensors.ahrs")["euler_noise"]) / DEG
     expected = np.hypot(noise, 0.1 / math.sqrt(12))
     np.testing.assert_allclose(euler.std(axis=0) / DEG, expected, rtol=0.1)
 
@@ -142,7 +149,7 @@ def test_gravity_taken_off_with_the_measured_attitude_leaves_the_noise():
 
 
 def test_depth_of_a_vehicle_at_rest_has_the_noise_of_the_table():
-    values = PROFILE.parameters("sensors.depth")
+    values = profile().parameters("sensors.depth")
     assert values["depth_noise"] == pytest.approx(0.122e-2, rel=0.02)
     sensor = started(Depth, **values)
     rows = run(sensor, ["depth"], 100 * (N - 1), 100, lambda _: {"position": (0, 0, 2.005)})

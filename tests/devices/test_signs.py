@@ -13,11 +13,12 @@ from seatrial.fmi.components.index import component_class
 from seatrial.system.parameters import load_vehicle
 from seatrial.system.profile.profile import load_profile
 from tests.craft.references import in_si
+from tests.kit import vehicles
 
 from .running import started
 
 G = 9.81
-# A camera measures what there is beside the vehicle, tests/devices/test_camera.py; a log measures
+# A camera measures what there is beside the vehicle, tests/kits/sailing/test_camera.py; a log measures
 # the water, tests/craft/test_through_water.py.
 SECTIONS = {
     vehicle: [
@@ -25,7 +26,7 @@ SECTIONS = {
         for section in load_profile(vehicle).sections()
         if section.startswith("sensors.") and section not in ("sensors.camera", "sensors.log")
     ]
-    for vehicle in (
+    for vehicle in vehicles(
         "hydrone",
         "videoray",
         "gloria",
@@ -84,6 +85,7 @@ def turn(component, table, duration, part="", **values):
     return {name: craft.get(name) for name in craft.terminals["motion"].members}
 
 
+HULLS = {"ship": "thruster-ship", "surface": "videoray-surface"}
 TURNS = {
     "hydrone": lambda: turn(
         "marine-craft", "hydrone", 60.0, force_1=[20, 0, 0], moment_1=[0, 0, 3]
@@ -148,7 +150,7 @@ def test_heeled_to_starboard_with_the_bow_up(vehicle, section):
             assert value.ravel()[-1] == pytest.approx(math.tau - 1.0)
 
 
-@pytest.mark.parametrize("vehicle", TURNS)
+@pytest.mark.parametrize("vehicle", [name for name in TURNS if vehicles(HULLS.get(name, name))])
 def test_the_craft_turns_to_starboard(vehicle):
     motion = TURNS[vehicle]()
     (u, v, _), r = motion["velocity"], motion["rates"][2]

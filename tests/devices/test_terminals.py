@@ -4,33 +4,16 @@ import itertools
 
 import pytest
 
-from seatrial.devices.actuators.force_actuator import ForceActuator
-from seatrial.devices.actuators.propulsion import Propulsion
-from seatrial.devices.ahrs import Ahrs
-from seatrial.devices.anemometer import Anemometer
-from seatrial.devices.compass import Compass
-from seatrial.devices.ctd import Ctd
-from seatrial.devices.depth import Depth
-from seatrial.devices.dvl import Dvl
-from seatrial.devices.echo_sounder import Altimeter, EchoSounder
-from seatrial.devices.gnss import Gnss
-from seatrial.devices.imu import Imu
-from seatrial.devices.lbl import Lbl
-from seatrial.devices.usbl import Usbl
 from seatrial.model.component import Component
-from seatrial.physics.cable.tether import Tether
-from seatrial.physics.craft.manoeuvring_ship import ManoeuvringShip
-from seatrial.physics.craft.marine_craft import MarineCraft
-from seatrial.physics.craft.rov import Rov
-from seatrial.physics.craft.sailboat import Sailboat
-from seatrial.physics.craft.surface_vessel import SurfaceVessel
-from seatrial.physics.craft.thruster_ship import ThrusterShip
-from seatrial.physics.environment.downwash import Downwash
-from seatrial.physics.environment.step_disturbance import StepDisturbance
-from seatrial.physics.parts.mmg_ship import MmgShip
+from tests.kit import classes
 
-CRAFT = (MarineCraft, Rov, Sailboat, ManoeuvringShip, MmgShip, ThrusterShip, SurfaceVessel)
-SENSORS = (Ahrs, Altimeter, Anemometer, Compass, Ctd, Depth, Dvl, EchoSounder, Gnss, Imu, Lbl, Usbl)
+SIX_DOF = classes("marine-craft", "rov")
+PLANAR = classes("thruster-ship", "surface-vessel")
+CRAFT = (*SIX_DOF, *PLANAR, *classes("sailboat", "manoeuvring-ship", "mmg-ship"))
+SENSORS = classes(
+    "ahrs", "altimeter", "anemometer", "compass", "ctd", "depth", "dvl", "echo-sounder", "gnss",
+    "imu", "lbl", "usbl",
+)  # fmt: skip
 
 
 def port_of(cls: type[Component], terminal: str, member: str):
@@ -47,7 +30,9 @@ def meet(giver: type[Component], gives: str, taker: type[Component], takes: str)
         assert (a.unit, a.axes) == (b.unit, b.axes), member
 
 
-@pytest.mark.parametrize(("craft", "sensor"), [*itertools.product(CRAFT, (*SENSORS, Downwash))])
+@pytest.mark.parametrize(
+    ("craft", "sensor"), [*itertools.product(CRAFT, (*SENSORS, *classes("downwash")))]
+)
 def test_every_craft_gives_the_motion_that_sensors_take(craft, sensor):
     meet(craft, "motion", sensor, "motion")
 
@@ -62,8 +47,8 @@ def test_readings_are_outputs_and_say_whether_they_are_valid(sensor):
 @pytest.mark.parametrize(
     ("source", "craft"),
     [
-        *itertools.product((Propulsion, Downwash), (MarineCraft, Rov)),
-        *itertools.product((ForceActuator, StepDisturbance), (ThrusterShip, SurfaceVessel)),
+        *itertools.product(classes("propulsion", "downwash"), SIX_DOF),
+        *itertools.product(classes("force-actuator", "step-disturbance"), PLANAR),
     ],
 )
 def test_wrenches_meet(source, craft):
@@ -72,6 +57,7 @@ def test_wrenches_meet(source, craft):
 
 
 @pytest.mark.parametrize("end", ["top", "bottom"])
-@pytest.mark.parametrize("craft", [MarineCraft, Rov])
-def test_either_end_of_a_tether_meets_an_attachment(craft, end):
-    meet(craft, "attachment", Tether, end)
+@pytest.mark.parametrize("craft", SIX_DOF)
+@pytest.mark.parametrize("tether", classes("tether"))
+def test_either_end_of_a_tether_meets_an_attachment(craft, tether, end):
+    meet(craft, "attachment", tether, end)

@@ -8,6 +8,8 @@ import math
 
 import pytest
 
+from tests.kit import needs_kits
+
 from .test_every_component import CLASSES, some_inputs
 
 HEADINGS = {
@@ -109,6 +111,7 @@ def difference(port, one, other):
     return max(off)
 
 
+@needs_kits("sailing", "ships", "underwater")
 def test_all_with_a_heading_are_here():
     names = {cls.__name__ for cls in WITH_HEADING}
     assert names >= {

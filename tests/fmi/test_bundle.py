@@ -304,6 +304,7 @@ def test_data_files_lie_beside_their_module_and_count_in_the_hash(write) -> None
     assert bundled(boat).script != first.script
 
 
+@needs_kits("sailing")
 def test_tables_of_a_shipped_component_travel_as_printed() -> None:
     sailboat = shipped_sources()["sailboat"]
     files = bundled(sailboat).files

@@ -9,6 +9,7 @@ from seatrial.fmi.compiled_functions import compiled_function
 from seatrial.fmi.components.index import component_class, components
 from seatrial.fmi.direct import DirectInstance
 from seatrial.model.plant import Plant
+from tests.kit import needs_kits
 
 QUICK = ("surface-vessel", "manoeuvring-ship")
 PLANTS = [
@@ -32,6 +33,7 @@ def test_the_bits_are_those_of_casadi(name: str) -> None:
             assert np.signbit(expected).tolist() == np.signbit(found).tolist()
 
 
+@needs_kits("videoray")
 def test_an_instance_in_process_uses_them() -> None:
     instance = DirectInstance(component_class("surface-vessel")("vessel"))
     instance.set_start({})

@@ -8,9 +8,9 @@ import tempfile
 from pathlib import Path
 
 from seatrial.errors import InputError
-from seatrial.physics.seabed.grid import read_grid
-from seatrial.physics.seabed.obstacles import read_obstacles
-from seatrial.physics.seabed.scene import Scene
+from seatrial_kits.underwater.seabed.grid import read_grid
+from seatrial_kits.underwater.seabed.obstacles import read_obstacles
+from seatrial_kits.underwater.seabed.scene import Scene
 
 
 def one(data: bytes) -> None:

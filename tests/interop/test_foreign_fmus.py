@@ -18,11 +18,11 @@ from typing import Any
 import pytest
 
 from seatrial.sim.master import Master
-from seatrial.sim.survey.surveying import Surveyed, fmus_in, survey
 from seatrial.system.assembling.assembly import assemble
 from seatrial.system.rig import duration_ns
 from seatrial_kits.interchange.osp.reading import read_osp
 from seatrial_kits.interchange.osp.structure import read_structure
+from seatrial_kits.survey.surveying import Surveyed, fmus_in, survey
 
 from .foreign import COLLECTIONS, collection
 

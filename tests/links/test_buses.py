@@ -8,7 +8,7 @@ from seatrial.system.files import read_toml
 from seatrial.system.flattening import load_rig
 from tests.kit import needs_kits
 
-pytestmark = needs_kits("can", "nmea")
+pytestmark = needs_kits("can", "fitted", "nmea", "sailing", "ships", "videoray")
 
 RIGS = [p for folder in provided_folders("harness/rigs") for p in sorted(folder.rglob("*.toml"))]
 

@@ -185,3 +185,8 @@ def figures_of(page: str) -> list[dict[str, Any]]:
     """Return the figures in a part of a page."""
     carried = re.findall(r'text/x-figure">(.*?)</script>', page, re.DOTALL)
     return [json.loads(unpacked(text)) for text in carried]
+
+
+def figure_below(page: str, heading: str) -> Any:
+    """Return the first figure below a heading of a page."""
+    return figures_of(page[page.index(heading) :])[0]

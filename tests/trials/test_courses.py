@@ -6,15 +6,17 @@ import math
 import numpy as np
 import pytest
 
-from seatrial.shipped import shipped_folder
+from seatrial.shipped import available
 from seatrial.trial.files.trial import load_trial
 from seatrial.trial.records.run_folder import load_run
 from seatrial.trial.running.run import run_trial
+from tests.kit import needs_kits
 
 pytestmark = pytest.mark.interop
 
-TRIALS = sorted(path.stem for path in (shipped_folder("harness") / "trials").glob("*-course-*"))
+TRIALS = sorted(name for name in available("harness/trials") if "-course-" in name)
 TRIALS = [name for name in TRIALS if name.startswith(("hydrone", "videoray"))]
+pytestmark = needs_kits("videoray")
 TRACKED = {"hydrone-course-square", "videoray-course-box", "hydrone-course-current"}
 """Those whose tracks are looked at here, and their criteria with them."""
 

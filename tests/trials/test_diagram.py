@@ -63,14 +63,14 @@ def within(inner: tuple[float, ...], outer: tuple[float, ...]) -> bool:
 
 @pytest.mark.slow
 def test_a_shipped_rig_is_drawn_whole(tmp_path) -> None:
-    done = seatrial("describe", "sil", "--vehicle", "gloria", "--diagram", "g.svg", cwd=tmp_path)
+    done = seatrial("describe", "sil", "--vehicle", "otter", "--diagram", "g.svg", cwd=tmp_path)
     assert done.returncode == 0, done.stderr
     assert done.stdout.splitlines()[-1] == "diagram: g.svg"
     drawing = Drawing((tmp_path / "g.svg").read_text("utf-8"))
     listed = [line.strip() for line in done.stdout.splitlines() if " -> " in line]
     ends = [re.split(r"\s+->\s+|  \(", line)[:2] for line in listed]
     assert sorted(drawing.connections) == sorted(f"{a} → {b}" for a, b in ends)
-    parts = load_rig("sil", None, {"vehicle": "gloria"}).components
+    parts = load_rig("sil", None, {"vehicle": "otter"}).components
     assert set(drawing.boxes) <= set(parts)
     assert {end.rpartition(".")[0] for pair in ends for end in pair}  # below: each has its box
     for end in (end for pair in ends for end in pair):
@@ -79,7 +79,7 @@ def test_a_shipped_rig_is_drawn_whole(tmp_path) -> None:
         assert apart(one, other)
     inside = [box for path, box in drawing.boxes.items() if path.startswith("vehicle.")]
     assert any(all(within(box, scope) for box in inside) for scope in drawing.scopes)
-    again = seatrial("describe", "sil", "--vehicle", "gloria", "--diagram", "h.svg", cwd=tmp_path)
+    again = seatrial("describe", "sil", "--vehicle", "otter", "--diagram", "h.svg", cwd=tmp_path)
     assert again.returncode == 0
     assert (tmp_path / "h.svg").read_bytes() == (tmp_path / "g.svg").read_bytes()
 
@@ -129,6 +129,6 @@ def test_mistakes(tmp_path) -> None:
     done = seatrial("describe", "sil", "--diagram", "rig.png", cwd=tmp_path)
     assert done.returncode == 2
     assert "--diagram: rig.png: the drawing is SVG: a name that ends in .svg" in done.stderr
-    done = seatrial("describe", "mariner-step-5", "--diagram", "none/rig.svg", cwd=tmp_path)
+    done = seatrial("describe", "otter-straight", "--diagram", "none/rig.svg", cwd=tmp_path)
     assert done.returncode == 3, done.stderr
     assert "none/rig.svg: No such file or directory" in done.stderr

@@ -127,6 +127,20 @@ def test_a_report_is_one_page_with_everything(write_run):
         assert signal in titles or signal.rpartition(".")[0] in titles
 
 
+def test_velocities_stand_in_three_columns_and_rotors_are_no_motion(write_run):
+    more = {f"hull.{name}.{axis}": ("m/s", np.ones(201)) for name in "abcd" for axis in "xyz"}
+    rotors = {f"hull.rotor_speed.r{i}": ("rad/s", np.ones(201)) for i in range(1, 5)}
+    page = Page(write_report(write_run(extra=more | rotors)))
+    titles = [[a["text"] for a in f["layout"].get("annotations", [])] for f in page.figures]
+    [velocities] = [i for i, shown in enumerate(titles) if any("hull.d.z" in t for t in shown)]
+    assert all(any(signal in t for t in titles[velocities]) for signal in more)
+    layout = page.figures[velocities]["layout"]
+    columns = {tuple(axis["domain"]) for name, axis in layout.items() if name.startswith("xaxis")}
+    assert len(columns) == 3
+    [rest] = [i for i, shown in enumerate(titles) if any("hull.rotor_speed" in t for t in shown)]
+    assert rest > velocities
+
+
 def test_angles_are_in_degrees_with_their_limits(write_run):
     page = Page(write_report(write_run()))
     roll = numbers(trace(page, "phi")["y"])

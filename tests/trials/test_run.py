@@ -17,8 +17,7 @@ from seatrial.trial.reports.report import write_report
 from seatrial.trial.running.output import claim_folder
 from seatrial.trial.running.run import Hooks, StoppedError, run_trial
 from tests.kit import needs_kits
-
-from .test_sailing import figure_below
+from tests.trials.conftest import figure_below
 
 BOAT = '''
 """A boat for trials."""

@@ -15,7 +15,7 @@ from seatrial.trial.records.run_folder import load_run
 from seatrial.trial.running.run import run_trial
 from tests.command import seatrial
 from tests.interop.running import free_port
-from tests.kit import needs_kits
+from tests.kit import needs_kits, vehicles
 
 pytestmark = needs_kits("ardupilot")
 
@@ -121,7 +121,7 @@ def sailed(folder: Path, **changes: str) -> None:
 
 
 @pytest.mark.interop
-@pytest.mark.parametrize("vehicle", ["hydrone", "otter", "videoray", "bluerov2"])
+@pytest.mark.parametrize("vehicle", vehicles("hydrone", "otter", "videoray", "bluerov2"))
 def test_pilots_on_a_course(vehicle: str, tmp_path: Path) -> None:
     sailed(tmp_path, choices__vehicle=vehicle)
 
@@ -136,7 +136,7 @@ def test_pilots_on_a_course_with_other_links(autopilot: str, tmp_path: Path) -> 
 
 
 @pytest.mark.interop
-@pytest.mark.parametrize("vehicle", ["hydrone", "otter", "videoray"])
+@pytest.mark.parametrize("vehicle", vehicles("hydrone", "otter", "videoray"))
 def test_vehicles_under_a_ground_station(vehicle: str, tmp_path: Path) -> None:
     links = {"autopilot__mavlink__links": "tcpin:127.0.0.1:0"}
     sailed(tmp_path, choices__vehicle=vehicle, choices__autopilot="mavlink", **links)
@@ -144,7 +144,7 @@ def test_vehicles_under_a_ground_station(vehicle: str, tmp_path: Path) -> None:
 
 @pytest.mark.long
 @pytest.mark.parametrize("autopilot", ["guidance", "mavlink"])
-@pytest.mark.parametrize("vehicle", ["mariner", "gloria", "bluerov2"])
+@pytest.mark.parametrize("vehicle", vehicles("mariner", "gloria", "bluerov2"))
 def test_the_slow_ones(vehicle: str, autopilot: str, tmp_path: Path) -> None:
     links = {"autopilot__mavlink__links": "tcpin:127.0.0.1:0"} if autopilot == "mavlink" else {}
     sailed(tmp_path, choices__vehicle=vehicle, choices__autopilot=autopilot, **links)

@@ -14,7 +14,9 @@ from seatrial.trial.running.hooks import Hooks
 from seatrial.trial.running.preparation import prepare
 from seatrial.trial.running.run import run_trial
 from seatrial_kits.interchange.export import export_ssp
+from tests.kit import needs_kits
 
+pytestmark = needs_kits("ships", "videoray")
 RIG = """
 step = "20 ms"
 [components]

@@ -7,8 +7,7 @@ import pytest
 
 from seatrial.trial.reports.report import write_report
 from seatrial.trial.reports.tethers import shape_figure
-
-from .test_sailing import figure_below
+from tests.trials.conftest import figure_below
 
 TIME = np.array([0.0, 1.0, 2.0])
 

@@ -7,7 +7,6 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
-from rich.markup import escape
 
 from ..errors import InputError
 from ..plugins import service
@@ -15,7 +14,7 @@ from ..trial.records.compare import compare as compare_runs
 from ..trial.records.run_folder import CAMPAIGN, MANIFEST
 from .answer import answer
 from .options import LogColumns, LogFormat
-from .show import console, print_notes, print_table
+from .show import console, print_table
 from .statuses import FAILED
 
 
@@ -49,7 +48,7 @@ def compare(
     campaigns = [(folder / CAMPAIGN).is_file() for folder in (run_a, run_b)]
     is_log = not (any(campaigns) or (run_b / MANIFEST).is_file())
     if page is None and (is_log or match or columns or format_name):
-        _compare_with_log(run_a, run_b, match or [], columns or [], format_name)
+        service("logs.compare_with_log")(run_a, run_b, match or [], columns or [], format_name)
         return
     if all(campaigns):
         service("campaigns.compare_named")(run_a, run_b, page)
@@ -67,30 +66,3 @@ def compare(
     console.print(comparison.summary)
     if not comparison.identical:
         raise typer.Exit(FAILED)
-
-
-def _compare_with_log(
-    folder: Path, path: Path, match: list[str], columns: list[str], format_name: str | None
-) -> None:
-    from ..trial.logs.formats import read_log
-    from ..trial.logs.pairing import pairs, read_matches
-    from ..trial.logs.quantities import read_columns
-    from ..trial.logs.residuals import HEADINGS, resampling_notes, residual_of
-    from ..trial.logs.steady_clock import steady
-    from ..trial.records.run_folder import load_run
-    from .reading import reading
-    from .show import text_table
-
-    matches, named = read_matches(match, "--match"), read_columns(columns) if columns else {}
-    run = load_run(folder)
-    with reading(path):
-        log = steady(read_log(path, format_name, named.pop("time", None)))
-    found, notes = pairs(run, log, matches, named)
-    residuals = [residual_of(signal, channel) for signal, channel in found]
-    residuals.sort(key=lambda each: 1.0 if each.fit is None else each.fit)
-    notes = [*run.notes, *log.notes, *notes]
-    print_notes(notes)
-    print_table(text_table(HEADINGS, [each.cells() for each in residuals]))
-    for line in resampling_notes(residuals):
-        console.print(escape(line), soft_wrap=True)
-    answer.result = {"notes": notes, "signals": [each.figures() for each in residuals]}

@@ -26,14 +26,13 @@ from ..fmi.instance import Value, Variable
 from ..fmi.interfaces.loaded import LoadedFmu
 from ..fmi.loading.built import build_needed, compiler_of
 from ..fmi.loading.load import load_fmu, open_instance
-from ..plugins import service
+from ..plugins import offered, service
 from ..system.parameters import OWN, load_vehicle, split_reference
 from ..system.references.values import from_entry
 from ..system.system import settable
 from .answer import answer
 from .options import Autopilot, Choices, Every, Match, Settings, Variant, Vehicle, changes_of
 from .show import MOST_SHOWN, console, print_more, print_notes, print_table
-from .survey import survey_folder
 from .terminals import print_proposals, print_terminals
 
 fmu_app = typer.Typer(no_args_is_help=True, pretty_exceptions_enable=False)
@@ -371,4 +370,5 @@ def _run_once(fmu: LoadedFmu) -> list[str]:
     return found
 
 
-fmu_app.command("survey")(survey_folder)
+if survey := offered("survey.folder"):
+    fmu_app.command("survey")(survey)

@@ -10,12 +10,12 @@ from typing import Any
 
 import numpy as np
 
-from seatrial.control.heading_autopilot import HeadingAutopilot
 from seatrial.errors import InputError
 from seatrial.model.expressions import Vector
-from seatrial.physics.craft.manoeuvring_ship import ManoeuvringShip
 from seatrial.system.parameters import Vehicle, load_vehicle
 from seatrial.trial.files.parametrised import parametrise
+from seatrial_kits.ships.control.heading_autopilot import HeadingAutopilot
+from seatrial_kits.ships.hulls.manoeuvring_ship import ManoeuvringShip
 
 SHIP, AUTOPILOT = "manoeuvring-ship", "heading-autopilot"
 GAINS = np.geomspace(1e-5, 1e2, 1401)

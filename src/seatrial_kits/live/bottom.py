@@ -8,11 +8,11 @@ from typing import Any
 import numpy as np
 
 from seatrial.errors import InputError
-from seatrial.physics.seabed.obstacles import read_obstacles
-from seatrial.physics.seabed.plane import Plane
-from seatrial.physics.seabed.shapes import Box, Capsule, Cylinder, Shape
 from seatrial.trial.criteria.expressions import FloatArray
 from seatrial.trial.records.run_folder import Run
+from seatrial_kits.underwater.seabed.obstacles import read_obstacles
+from seatrial_kits.underwater.seabed.plane import Plane
+from seatrial_kits.underwater.seabed.shapes import Box, Capsule, Cylinder, Shape
 
 from .meshes import Mesh
 from .water import Water

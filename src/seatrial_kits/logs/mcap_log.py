@@ -14,7 +14,8 @@ from seatrial.trial.logs.clock_times import date_of
 from seatrial.trial.logs.formats import Format
 from seatrial.trial.logs.quantities import QUANTITIES, Column
 from seatrial.trial.logs.reading_progress import open_bytes
-from seatrial.trial.logs.run_log import of_craft
+
+from .run_log import of_craft
 
 _MAGIC = b"\x89MCAP0\r\n"
 _ROS = (b"ros1", b"ros2")

@@ -14,9 +14,9 @@ from seatrial.trial.logs.channels import Array, Channel, Log, channel
 from seatrial.trial.logs.clock_times import date_of
 from seatrial.trial.logs.formats import Format
 from seatrial.trial.logs.quantities import QUANTITIES, Column, series
-from seatrial.trial.logs.run_log import of_craft
 
 from .parquet_file import TIME
+from .run_log import of_craft
 
 _MAGIC = b"PAR1"
 _WITH_UNIT = re.compile(r"(.+?)\s*[\[(]([^\[\]()]+)[\])]")

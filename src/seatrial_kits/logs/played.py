@@ -21,10 +21,11 @@ from seatrial.model.units import quantity
 from seatrial.system.files import FileModel, read_toml, validated
 from seatrial.trial.logs.channels import Array, Log
 from seatrial.trial.logs.formats import read_log
-from seatrial.trial.logs.pairing import local_metres
 from seatrial.trial.logs.quantities import QUANTITIES, Column, defaults
-from seatrial.trial.logs.resampling import Trace, served, trace
-from seatrial.trial.logs.steady_clock import from_zero, steady
+
+from .paired.pairing import local_metres
+from .paired.resampling import Trace, served, trace
+from .paired.steady_clock import from_zero, steady
 
 KNOWN = "_valid"
 """What the name of the switch beside an output ends with: whether the log knows the value."""

@@ -72,7 +72,7 @@ class Instruments:
         """Return that of a DVL's velocity, in its own axes or ahead-left-up; zeros if unknown.
 
         One beam's noise s makes s / (sqrt(2) sin a) ahead and abeam, s / (2 cos a) down, with
-        the angle a of the beams (`seatrial.devices.dvl.Dvl`).
+        the angle a of the beams (`seatrial_kits.underwater.dvl.Dvl`).
         """
         (beam,) = self.deviations("dvl", "bottom", 1)
         angle = axis(self._of["dvl"].get("beam_angle", math.radians(22.5)))

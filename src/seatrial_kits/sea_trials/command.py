@@ -19,9 +19,9 @@ from seatrial.cli.show import console, print_notes
 from seatrial.errors import InputError, unknown
 from seatrial.model.readable import number, person_scale
 from seatrial.model.units import quantity
-from seatrial.trial.logs.common_time import WHOLE, Window
 from seatrial.trial.logs.quantities import Column, read_columns
 from seatrial.trial.records.run_folder import MANIFEST, load_run
+from seatrial_kits.logs.paired.common_time import WHOLE, Window
 
 from .drawing import shown_number
 from .evaluation import FIGURES, Done, approach_speed_of, criteria_name, figures_of

@@ -7,12 +7,12 @@ from pathlib import Path
 
 from seatrial.errors import InputError
 from seatrial.trial.logs.channels import Log
-from seatrial.trial.logs.common_time import WHOLE, Window
 from seatrial.trial.logs.formats import read_log
-from seatrial.trial.logs.motion import motion
 from seatrial.trial.logs.quantities import Column
+from seatrial_kits.logs.paired.common_time import WHOLE, Window
 
 from .figures.record import Record
+from .log_motion import motion
 
 FURTHER = ("helm", "roll", "pitch", "depth", "power")
 """Quantities of a record besides heading and position."""

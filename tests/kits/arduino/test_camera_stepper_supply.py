@@ -4,8 +4,8 @@ import math
 
 import pytest
 
-from seatrial.devices.camera import SLOTS
 from seatrial_kits.arduino.wiring import BLOCKS
+from seatrial_kits.sailing.camera import SLOTS
 
 from .bench import Bench, write_sketch
 

@@ -9,7 +9,7 @@ import pytest
 
 from seatrial.trial.records.run_folder import load_run
 from tests.command import seatrial
-from tests.trials.logs import circle, writers
+from tests.kits.logs import circle, writers
 
 COLUMNS = "latitude=Lat,longitude=Lon,heading=HDG,helm=RUD,time=UTC"
 

@@ -18,7 +18,6 @@ from pymavlink.dialects.v20 import all as mavlink
 from seatrial.fmi.components.table import table_component
 from seatrial.links.text import Inbox
 from seatrial.trial.logs.formats import format_of, read_log
-from seatrial.trial.logs.steady_clock import steady
 from seatrial.trial.records.run_folder import load_run
 from seatrial_kits.can.frame import Frame
 from seatrial_kits.can.operations import Transmit, decode
@@ -27,6 +26,7 @@ from seatrial_kits.can.recorded import recorded_frames
 from seatrial_kits.can.run_log import BusLog
 from seatrial_kits.logs.imported import Wanted, imported, write_run
 from seatrial_kits.logs.mcap_file import write_mcap
+from seatrial_kits.logs.paired.steady_clock import steady
 from seatrial_kits.logs.parquet_file import write_parquet
 from seatrial_kits.logs.played import played
 from seatrial_kits.logs.ros2_bag import write_ros2_bag

@@ -34,8 +34,9 @@ LINKS = (
     "seatrial.links.",
     *(
         f"seatrial_kits.{kit}."
-        for kit in ("arduino", "ardupilot", "can", "gprs", "mavlink", "nmea", "px4", "videoray")
+        for kit in ("arduino", "ardupilot", "can", "gprs", "mavlink", "nmea", "px4")
     ),
+    *(f"seatrial_kits.videoray.{name}" for name in ("m5_thrusters", "player", "rov", "topside")),
 )
 CANDIDATES = [
     name

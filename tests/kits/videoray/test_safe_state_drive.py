@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from seatrial.shipped import shipped_folder
+from seatrial.shipped import available
 
 if sys.platform == "win32":
     pytest.skip("terminals and processes", allow_module_level=True)
@@ -38,9 +38,7 @@ def profile(tmp_path: Path, safe_state: str | None) -> tuple[str, ...]:
     """Return the options of a profile of node 5, with another safe state than the shipped one."""
     kept = [
         line
-        for line in (shipped_folder("hil_profiles") / "videoray.toml")
-        .read_text("utf-8")
-        .splitlines()
+        for line in available("hil_profiles")["videoray"].read_text("utf-8").splitlines()
         if not line.startswith("safe_state")
     ]
     at = kept.index("[links.topside-port]") + 1

@@ -243,14 +243,16 @@ def with_vehicle(name: str, changes: dict[str, Any]) -> tuple[str, dict[str, Any
 
     A vehicle's name means the trial for every vehicle under the autopilot that is chosen, else
     the one in which it sets out. A trial of that name comes first. Raises InputError for a rig's
-    name, with its trials, for a vehicle's file that cannot be read, and for a name that is none,
-    with those like it.
+    name, with its trials, for a vehicle's file that cannot be read, for two vehicles, and for a
+    name that is none, with those like it.
     """
     trials = available("harness/trials")
     if name in trials or name.endswith(".toml") or is_package(name):
         return name, changes
     here = place_in(Path.cwd() / FOLDERS, "harness/rigs", f"vehicles/{name}")
     if here is not None or name in _vehicles():
+        if (other := changes.get(_VEHICLE, name)) != name:
+            raise InputError(f"{name!r} is a vehicle, and --vehicle names another one, {other!r}")
         trial = _trial_under(str(changes.get(_AUTOPILOT, "")))
         return trial, {_VEHICLE: name, **changes}
     if name in available("harness/rigs"):

@@ -95,7 +95,7 @@ _TERMS = {**TERMS, "propellers": propellers}
 class Rov(Propellers, SixDofCraft):
     """Underwater vehicle: `SixDofCraft` with eta that counts turns, and a current that may change.
 
-    [Paulino2015], eqs 3.8 to 3.45, in the corrected form that docs/vehicles/videoray.md lists.
+    [Paulino2015], eqs 3.8 to 3.45, in the corrected form that docs/kits/videoray/videoray.md lists.
     eta = (x, y, z, phi, theta, psi): body origin in {n} (x north, y east, z down), m, and Euler
     angles ZYX, rad; nu = (u, v, w, p, q, r): velocity of the body origin over ground, m/s, and
     angular rate, rad/s, in {b} (x bow, y starboard, z down). eta' = blkdiag(J1, J2) nu.

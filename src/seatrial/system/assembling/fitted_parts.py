@@ -8,7 +8,6 @@ from collections.abc import Container, Iterable, Iterator
 from ...errors import InputError
 from ...fmi.instance import Variable
 from ...model.units import unit
-from ...physics.parts.slots import COUNT
 from ..part import Part
 from ..paths import split_path
 from ..system import System
@@ -65,9 +64,9 @@ def vacant(system: System) -> set[str]:
             if not _is_craft(part, sort):
                 continue
             count = len(_kinds(part, sort))
-            for port, letter in _COMMANDS[sort]:
-                empty = range(count + 1, COUNT + 1)
-                found |= {f"{name}.{port}.{letter}{number}" for number in empty}
+            for port, _ in _COMMANDS[sort]:
+                scalars = part.instance.variables.ports.get(port, [])[count:]
+                found |= {f"{name}.{scalar.name}" for scalar in scalars}
                 found |= set() if count else {f"{name}.{port}"}
     return found
 

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, Discriminator, Tag
+from pydantic import BaseModel, Discriminator, Tag, field_validator
+from pydantic_core import PydanticCustomError
 
 from ...errors import InputError
 from ...model.units import split_quantity
@@ -32,6 +33,15 @@ class Resolved(BaseModel):
 
 class Entry(Resolved, FileModel):
     """One value as a file has it."""
+
+    @field_validator("value", mode="before")
+    @classmethod
+    def _one_kind(cls, value: Any) -> Any:
+        """Refuse a list that has quantities and numbers without a unit."""
+        if isinstance(value, list) and any(isinstance(each, str) for each in value):
+            needed = "quantities as '0.1 m', with a unit for all but 0, or numbers alone"
+            raise PydanticCustomError("mixed", "a list has {needed}", {"needed": needed})
+        return value
 
 
 class DerivedEntry(FileModel):

@@ -16,7 +16,7 @@ _MARK = "seabed_depth"
 
 
 class SeabedEntry(FileModel):
-    """The seabed and what stands on it: the parameters of `seabed.parameters.OverSeabed`."""
+    """The seabed and what stands on it: the parameters of `OverSeabed` of the kit `underwater`."""
 
     depth: Quantity | None = None
     slope: Quantity | None = None

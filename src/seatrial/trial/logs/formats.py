@@ -1,4 +1,4 @@
-"""Formats of logs: the core's and those of kits, by name and by content."""
+"""Formats of logs, which kits bring: by name and by content."""
 
 from __future__ import annotations
 
@@ -36,11 +36,7 @@ class Format:
     """Channels that can serve a quantity, as `Log.defaults`, unless the log itself says them."""
 
 
-FORMATS = Registry(
-    "seatrial.log_formats",
-    "log format",
-    {"run": "seatrial.trial.logs.run_log:RUN", "csv": "seatrial.trial.logs.csv_log:CSV"},
-)
+FORMATS = Registry("seatrial.log_formats", "log format", {})
 _OWN_TIME = "time"
 """What experiments call the time of a log that has times of its own."""
 _LAST = "csv"
@@ -96,8 +92,7 @@ def _head(path: Path) -> bytes:
 
 
 def _found(path: Path, head: bytes) -> str:
-    names = [name for name in FORMATS.names() if name != _LAST]
-    for name in (*names, _LAST):
+    for name in sorted(FORMATS.names(), key=lambda name: name == _LAST):
         if FORMATS.load(name).recognises(path, head):
             return name
     titles = ", ".join(f"{name} ({FORMATS.load(name).title})" for name in FORMATS.names())

@@ -29,11 +29,12 @@ from .metrics_section import metrics_figure, metrics_of
 from .parameter_tables import parameter_tables, value_text
 from .plotly_js import plotly_js
 from .plots import MAX_POINTS, Line, Mark, Panel, deck_figure, time_figure, track_figure
-from .sailing import add_wind_and_marks
 from .sea_section import sea_figures
 from .templates import environment
 from .tethers import tether_figures
+from .thinning import thinned
 from .timing_section import pacing, step_times
+from .wind_and_marks import add_wind_and_marks
 
 REPORT = "report.html"
 _MOTION = ("position", "attitude")
@@ -44,6 +45,8 @@ _POINTS = 55_000
 _FEWEST_POINTS = 500
 _MOST_DRAWN = 500
 """Signals of one component that are drawn below "Other signals"."""
+_MOST_COLUMNS = 3
+"""Panels side by side: narrower ones do not hold their titles."""
 
 
 @dataclass(frozen=True)
@@ -109,14 +112,18 @@ def write_report(
     library: str | None = None,
     play: Play | None = None,
     viewer: str | None = None,
+    run: Run | None = None,
 ) -> Path:
     """Write ``report.html`` into a run folder and return its path. Raises InputError.
+
+    ``run`` is that of the folder, where it is in memory already.
 
     The page has Plotly's JavaScript in it, or takes it from the address ``library``, relative to
     it: pages of a campaign share one, and likewise the ``viewer`` of what ``play`` returns.
     """
-    run = load_run(folder)
-    played = None if play is None else play(run)
+    run = run or load_run(folder)
+    drawn = thinned(run)
+    played = None if play is None else play(drawn)
     convergence = load_convergence(run.folder)
     metrics = metrics_of(run)
     page = render(
@@ -130,7 +137,7 @@ def write_report(
         verdicts=run.verdicts,
         metrics=metrics,
         metrics_figure=metrics_figure(run, metrics),
-        sections=list(_sections(run)),
+        sections=list(_sections(drawn)),
         parameters=list(parameter_tables(run)),
         timing=list(_flat({k: v for k, v in run.timing.items() if k not in _OWN_TABLES})),
         step_times=step_times(run.timing),
@@ -175,7 +182,9 @@ def _sections(run: Run) -> Iterator[Section]:
     craft = {port.component for port in numeric if port.name in _MOTION}
     motion = [p for p in numeric if p.name in _MOTION]
     units = {p: run.units[p.signals[0]] for p in numeric}
-    speeds = [p for p in numeric if p.component in craft and units[p] in ("m/s", "rad/s")]
+    # A vector has three axes at most: the speeds of four rotors are no motion of the craft.
+    moved = [p for p in numeric if p.component in craft and len(p.signals) <= 3]
+    speeds = [p for p in moved if units[p] in ("m/s", "rad/s")]
     whole = set(numeric)
     forces = _first([p for p in numeric if units[p] in _FORCE_UNITS], _MOST_DRAWN)
     forces = [p for p in forces if p in whole]
@@ -342,7 +351,10 @@ def _alike_craft(run: Run, ports: Iterable[Port]) -> list[list[str]]:
 
 def _over_time(run: Run, columns: Sequence[Sequence[Panel]]) -> str:
     points = points_of_a_line(len(run.signals))
-    return time_figure(run.time, columns, events_of(run), points).json()
+    placed = [list(column) for column in columns[:_MOST_COLUMNS]]
+    for column in columns[_MOST_COLUMNS:]:
+        min(placed, key=len).extend(column)
+    return time_figure(run.time, placed, events_of(run), points).json()
 
 
 def points_of_a_line(signals: int) -> int:

@@ -24,7 +24,8 @@ from seatrial.trial.reports.decks import Pad, deck, pads
 from seatrial.trial.reports.plotly_js import plotly_js
 from seatrial.trial.reports.plots import deck_figure
 from seatrial.trial.reports.report import REPORT, Play, Played, render, write_report
-from seatrial.trial.reports.sailing import PolarPoint, polar_figure, polar_point
+
+from .polar import PolarPoint, polar_figure, polar_point
 
 LIBRARY, VIEWER = "plotly.js", "viewer.js"
 """Plotly's JavaScript, beside a campaign's page: once for all of its pages."""

@@ -11,9 +11,9 @@ import numpy as np
 from seatrial.errors import InputError
 from seatrial.system.files import FileModel
 from seatrial.trial.criteria.expressions import FloatArray
-from seatrial.trial.logs.common_time import together, unwrapped
 from seatrial.trial.logs.formats import read_log as read_any
 from seatrial.trial.logs.quantities import QUANTITIES, Column, chosen
+from seatrial_kits.logs.paired.common_time import together, unwrapped
 
 from ..gravity import acceleration_along
 from ..output_error import AxisLog

@@ -12,11 +12,11 @@ import numpy as np
 from seatrial.errors import InputError
 from seatrial.fmi.components.table import RESERVED
 from seatrial.trial.logs.channels import Log
-from seatrial.trial.logs.common_time import Window
-from seatrial.trial.logs.pairing import Match
 from seatrial.trial.logs.quantities import Column, defaults
-from seatrial.trial.logs.resampling import Trace, served
 
+from ..paired.common_time import Window
+from ..paired.pairing import Match
+from ..paired.resampling import Trace, served
 from ..played import found_in
 
 YAW, SPEED, HELM = "yaw", "speed", "helm"

@@ -37,10 +37,7 @@ from seatrial.cli.watch import Watch
 from seatrial.system.system import Engine
 from seatrial.trial.files.trial import Trial
 from seatrial.trial.logs.formats import format_of, read_log
-from seatrial.trial.logs.pairing import read_matches
 from seatrial.trial.logs.quantities import read_columns
-from seatrial.trial.logs.residuals import HEADINGS, resampling_notes
-from seatrial.trial.logs.steady_clock import from_zero, steady
 from seatrial.trial.records.ending import is_whole
 from seatrial.trial.reports.playing import play
 from seatrial.trial.reports.report import write_report
@@ -49,6 +46,9 @@ from seatrial.trial.running.run import Result
 from seatrial.trial.running.supervision import run_supervised
 
 from ..command_import import Begin, Checks, End, window_of
+from ..paired.pairing import read_matches
+from ..paired.residuals import HEADINGS, resampling_notes
+from ..paired.steady_clock import from_zero, steady
 from .asked import Asked, read_feeds
 from .page import compared, describe, write_data, write_page
 from .preparing import Driven, Prepared, prepared

@@ -13,13 +13,13 @@ from seatrial.errors import InputError, unknown
 from seatrial.files.whole_file import write_whole
 from seatrial.model.readable import person_scale
 from seatrial.trial.logs.channels import Array
-from seatrial.trial.logs.pairing import motion_signals, run_trace
-from seatrial.trial.logs.residuals import HEADINGS, Residual, resampling_notes, residual_of
 from seatrial.trial.records.run_folder import MANIFEST, Run, load_run
 from seatrial.trial.reports.plots import MAX_POINTS, Line, Panel, time_figure, track_figure
 from seatrial.trial.reports.report import render
 from seatrial.trial.running.output import write_json
 
+from ..paired.pairing import motion_signals, run_trace
+from ..paired.residuals import HEADINGS, Residual, resampling_notes, residual_of
 from .preparing import COMPONENT, Prepared
 
 PAGE = "shadow.html"

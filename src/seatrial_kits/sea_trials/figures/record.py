@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
 from seatrial.errors import InputError
-from seatrial.trial.logs.common_time import GAP, unwrapped
+from seatrial_kits.logs.paired.common_time import GAP, unwrapped
 
 Array = NDArray[np.float64]
 

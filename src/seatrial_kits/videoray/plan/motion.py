@@ -8,12 +8,13 @@ from pathlib import Path
 
 import numpy as np
 
-from seatrial.control.tracking.nominal_trajectory import NominalTrajectory
-from seatrial.control.tracking.vessel_nominal import Nominal, Profile, VesselModel, nominal_motion
 from seatrial.errors import InputError
 from seatrial.model.expressions import Vector
 from seatrial.system.parameters import load_vehicle
 from seatrial.trial.files.parametrised import parametrise
+
+from ..tracking.nominal_trajectory import NominalTrajectory
+from ..tracking.vessel_nominal import Nominal, Profile, VesselModel, nominal_motion
 
 VESSEL = "surface-vessel"
 AXES = ("surge", "yaw")

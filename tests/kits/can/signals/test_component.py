@@ -16,7 +16,7 @@ from seatrial_kits.can.signals.component import CanSignals
 from .bench import Bench, signals
 
 ODD = Path(__file__).parent / "odd.dbc"
-GLORIA = shipped_folder("hil_profiles") / "gloria.dbc"
+GLORIA = shipped_folder("harness") / "kits/sailing/profiles/gloria.dbc"
 HYDRONE = shipped_folder("hil_profiles") / "hydrone.dbc"
 DEG = math.pi / 180.0
 

@@ -1,1 +1,0 @@
-"""Sails and courses of sailing robots."""

@@ -1,1 +1,0 @@
-"""Velocities and trajectories of vessels held."""

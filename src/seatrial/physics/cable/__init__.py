@@ -1,1 +1,0 @@
-"""Cables and tethers."""

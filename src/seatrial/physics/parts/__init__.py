@@ -1,1 +1,0 @@
-"""Parts of a body, each of which meets the water where it is: propulsors, foils, ballast."""

@@ -1,1 +1,0 @@
-"""Seabed, obstacles and surface as geometry: depths, normals, ranges along rays."""

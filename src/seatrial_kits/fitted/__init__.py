@@ -1,0 +1,1 @@
+"""Craft by data: propulsors, foils and ballast, and the allocation to them."""

@@ -1,0 +1,1 @@
+"""Forces and moments wanted to the orders and angles of parts."""

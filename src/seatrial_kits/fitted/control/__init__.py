@@ -1,0 +1,1 @@
+"""Autopilots that pitch an underwater vehicle."""

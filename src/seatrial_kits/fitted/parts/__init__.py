@@ -1,0 +1,1 @@
+"""Propulsors, foils and ballast: equations of one part each."""

@@ -1,0 +1,1 @@
+"""Sailing boats: rigid sail and hull, guidance, lookout, marks afloat."""

@@ -1,0 +1,1 @@
+"""Control of a sailing boat: guidance, heading, sail."""

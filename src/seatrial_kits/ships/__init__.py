@@ -1,0 +1,1 @@
+"""Ships: hulls that rudders or thrusters steer, their engines and autopilots."""

@@ -1,0 +1,1 @@
+"""Autopilots of ships, and what they know of the motion."""

@@ -1,0 +1,1 @@
+"""Engines, steering gear and thrusters of ships."""

@@ -1,0 +1,1 @@
+"""Cables: strain and bending of a line of nodes, and the tether made of it."""

@@ -1,0 +1,1 @@
+"""Velocities of a vessel: wanted, estimated, held."""

@@ -1,0 +1,1 @@
+"""The vehicle at constant depth, its thrusters, and what disturbs it."""
