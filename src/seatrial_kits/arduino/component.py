@@ -97,7 +97,8 @@ class Arduino(ArduinoPorts):
         try:
             self._mcu = mcu = self._board_mcu()
             self._wires = read_wires(self.wires, mcu)
-            there = {*range(mcu.uarts), *(w.number for w in self._wires if w.kind in _SOFT)}
+            own = UARTS if mcu.family == "esp32" else mcu.uarts  # its last is Bluetooth's
+            there = {*range(own), *(w.number for w in self._wires if w.kind in _SOFT)}
             self._rates = {k: v for k, v in read_uarts(self.uarts).items() if k in there}
             self._eeprom = read_eeprom(self.eeprom, mcu)
             self._field_n = field_at_home(self)

@@ -184,11 +184,11 @@ def test_a_client_asks_pythons_server(tmp_path):
         server.shutdown()
         beside.join()
     assert lines == [
-        "200 16 GET /depth?x=1 ",
+        "200 15 GET /depth?x=1 ",
         "200 -1 four and eleven",
         "200 14 POST /long a=5",
         f"1200 {len(lines[3].split(' ', 2)[2])} Basic aGVsbTpzZWNyZXQ= ['2']",
-        "200 12 GET /depth ",
+        "200 11 GET /depth ",
         "0",
         "connection refused",
         "0-1",

@@ -70,6 +70,26 @@ int sketch_vsnprintf(char *to, size_t size, const char *format, va_list values)
     return (int)out.size();
 }
 
+static int (*put_on_stdout)(char c, FILE *to);
+
+FILE *fdevopen(int (*put)(char c, FILE *to), int (*)(FILE *))
+{
+    put_on_stdout = put;
+    return stdout;
+}
+
+int sketch_printf(const char *format, ...)
+{
+    char text[1024];
+    va_list values;
+    va_start(values, format);
+    int size = sketch_vsnprintf(text, sizeof text, format, values);
+    va_end(values);
+    for (char *c = text; put_on_stdout && *c; c++)
+        put_on_stdout(*c, stdout);
+    return put_on_stdout ? size : -1;
+}
+
 int sketch_snprintf(char *to, size_t size, const char *format, ...)
 {
     va_list values;

@@ -5,6 +5,7 @@
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -17,6 +18,10 @@ int sketch_sscanf(const char *text, const char *format, ...);
 #define vsnprintf sketch_vsnprintf
 #define vsprintf(to, format, values) sketch_vsnprintf(to, 4096, format, values)
 #define sscanf sketch_sscanf
+int sketch_printf(const char *format, ...); /* to where fdevopen() says, else nowhere */
+FILE *fdevopen(int (*put)(char c, FILE *to), int (*get)(FILE *from));
+#define printf(...) sketch_printf(__VA_ARGS__)
+#define printf_P(...) sketch_printf(__VA_ARGS__)
 #define snprintf_P sketch_snprintf
 #define sprintf_P sketch_sprintf
 #define vsnprintf_P sketch_vsnprintf

@@ -34,6 +34,7 @@ DATA_FILES = (
     "WiFiUdp.h",
     "Wire.h",
     "api.cpp",
+    "binary.h",
     "board.h",
     "cbuf.h",
     "devices.cpp",

@@ -133,8 +133,13 @@ void parts() {
   TRACE(SERIAL_RX_BUFFER_SIZE); TRACE(Serial.getWriteError()); TRACE(Serial.getTimeout());
 }
 
+int put_on_serial(char c, FILE *) { Serial.write(c); return 0; }
+
 void setup() {
   Serial.begin(57600, SERIAL_8N1);
+  printf("nowhere");
+  fdevopen(put_on_serial, 0);
+  printf_P(PSTR("%d %s\r\n"), printf("%u|%ld\r\n", 65535u, -70000L), "chars");
   scan();
   strings();
   numbers();
