@@ -255,3 +255,71 @@ def test_rfm95(tmp_path, backend, by_interrupt):
         assert bench.run(0.2).startswith(b"to you")
     with Bench(sketch, backend, **values) as bench:
         assert bench.run(0.3) == b"none\r\n"
+
+
+HAND = """
+#include <SPI.h>
+#include <RF24.h>
+RF24 radio(49, 53);
+struct { int16_t throttle, rudder; } sticks = {700, -20};
+void setup() {
+  Serial.begin(115200);
+  if (!radio.begin() || !radio.isChipConnected()) { Serial.println("none"); return; }
+  radio.setChannel(80); radio.setDataRate(RF24_250KBPS);
+  if (ANSWERS) { radio.enableDynamicPayloads(); radio.enableAckPayload(); } else radio.setPayloadSize(sizeof sticks);
+  radio.openWritingPipe((const uint8_t *)"00001"); radio.stopListening();
+}
+void loop() {
+  sticks.throttle++;
+  Serial.print(radio.write(&sticks, sizeof sticks));
+  if (ANSWERS && radio.isAckPayloadAvailable()) { int16_t volts; radio.read(&volts, sizeof volts); Serial.print(volts); }
+  Serial.println(); delay(50);
+}
+"""
+BOAT = """
+#include <SPI.h>
+#include <RF24.h>
+RF24 radio(49, 53);
+struct { int16_t throttle, rudder; } sticks;
+int16_t volts = 740;
+void setup() {
+  Serial.begin(115200); radio.begin(); radio.setChannel(80); radio.setDataRate(RF24_250KBPS);
+  if (ANSWERS) { radio.enableDynamicPayloads(); radio.enableAckPayload(); } else radio.setPayloadSize(sizeof sticks);
+  radio.openReadingPipe(1, (const uint8_t *)"00001"); radio.startListening();
+  if (ANSWERS) radio.writeAckPayload(1, &volts, sizeof volts);
+}
+void loop() {
+  if (!radio.available()) return;
+  radio.read(&sticks, sizeof sticks);
+  Serial.print(sticks.throttle); Serial.print(' '); Serial.println(sticks.rudder);
+  if (ANSWERS) radio.writeAckPayload(1, &volts, sizeof volts);
+}
+"""
+
+
+@both
+@pytest.mark.parametrize("answers", [0, 1])
+def test_nrf24_between_two_boards(tmp_path, backend, answers):
+    """Sticks go to the boat in each packet, and her voltage comes back with acknowledgements."""
+    if not (FOLDER / "RF24").is_dir():
+        pytest.skip(f"there is no {FOLDER / 'RF24'}")
+    values = {"libraries": str(FOLDER), "flags": f"-DANSWERS={answers}"}
+    wires = "53 nrf24 3"
+    with (
+        Bench(write_sketch(tmp_path, HAND, "hand"), backend, wires=wires, **values) as hand,
+        Bench(write_sketch(tmp_path, BOAT, "boat"), backend, wires=wires, **values) as boat,
+    ):
+        for _ in range(50):
+            for one, other in ((hand, boat), (boat, hand)):
+                one.run(0.02)
+                other.one.set("rx.uart3", one.one.get("tx.uart3"))
+        assert hand.sent[3].startswith(b"00001")
+        said = hand.sent[0].decode().split()
+        heard = [tuple(map(int, line.split())) for line in boat.sent[0].decode().splitlines()[:-1]]
+    assert len(heard) > 10
+    assert [throttle for throttle, _ in heard] == list(range(heard[0][0], heard[0][0] + len(heard)))
+    assert {rudder for _, rudder in heard} == {-20}
+    assert set(said[:-1]) <= ({"1", "1740"} if answers else {"1"})
+    assert said.count("1740") > 8 or not answers
+    with Bench(tmp_path / "hand", backend, **values) as alone:
+        assert alone.run(1.0).startswith(b"none")

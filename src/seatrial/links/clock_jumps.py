@@ -27,11 +27,12 @@ def clock_jumps(times: Array) -> tuple[NDArray[np.int64], Array]:
     device, are late and no clock that was set.
     """
     steps = np.diff(times)
-    usual = usual_step(times)
+    places = np.flatnonzero((steps < -SET_BACK) | (steps > SET_FORWARD)) + 1
+    usual = usual_step(times) if len(places) else 0.0
     found: list[int] = []
     shifts: list[float] = []
     latest, shift, done = -np.inf, 0.0, 0
-    for place in np.flatnonzero((steps < -SET_BACK) | (steps > SET_FORWARD)) + 1:
+    for place in places:
         latest = max(latest, float(times[done:place].max()) + shift)
         done = int(place)
         ahead = float(times[place]) + shift - latest

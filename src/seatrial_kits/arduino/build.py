@@ -10,15 +10,15 @@ from pathlib import Path
 
 from seatrial.errors import InputError
 
-from .dialect import narrowed
-from .letter_case import with_other_cases
-from .libraries import ASSEMBLY, SOURCES, compiled, files_of, read_source, write_source
 from .mcus import Mcu
 from .resources import TEXTS, cached, contents, laid_out
-from .sketch import Sketch
-from .target_board import is_foreign, target_text
+from .sources.dialect import narrowed
+from .sources.letter_case import with_other_cases
+from .sources.libraries import ASSEMBLY, SOURCES, compiled, files_of, read_source, write_source
+from .sources.sketch import Sketch
+from .sources.target_board import is_foreign, target_text
+from .sources.unsupported import advice, missing_headers, unsupported
 from .toolchain import need, version
-from .unsupported import advice, missing_headers, unsupported
 
 _LINES = 120
 """Of compilers' errors that a message has."""
@@ -32,6 +32,8 @@ class Family:
     """How the sketches of a family of boards are compiled: its API is in ``folder``."""
 
     folder: str
+    more: tuple[str, ...]
+    """Folders in it with headers that sketches name without it."""
     core: tuple[str, ...]
     """Its sources."""
     base: tuple[str, ...]
@@ -45,6 +47,7 @@ class Family:
 FAMILIES = {
     "avr": Family(
         "core",
+        (),
         ("api", "avr_libc", "devices"),
         (),
         ("-fsingle-precision-constant", "-include", "sketch.h"),
@@ -54,9 +57,11 @@ FAMILIES = {
     # A computer's 32 bits are this board's: int, long, pointers and size_t; char has no sign.
     "esp32": Family(
         "esp32",
+        ("web",),
         (
-            *("api", "asynctcp", "devices", "digests", "espnow", "network", "pulses"),
-            *("queues", "storage", "tasks", "tcp", "timers", "twai"),
+            *("api", "devices", "espnow", "network", "pulses", "queues", "storage", "tasks"),
+            *("tcp", "timers", "twai", "watchdog", "driver/ledc"),
+            *("web/asynctcp", "web/digests", "web/dnsserver", "web/httpclient", "web/webserver"),
         ),
         ("-m32", "-msse2", "-mfpmath=sse", "-funsigned-char", "-fasynchronous-unwind-tables"),
         ("-malign-double",),
@@ -110,7 +115,8 @@ def _includer(sketch: Sketch, mcu: Mcu) -> list[str]:
 def _compiler(mcu: Mcu) -> list[str]:
     """Return the compiler with what all sources of a board's program have."""
     family, place = FAMILIES[mcu.family], laid_out()
-    places = [f"-I{place / each}" for each in (family.folder, "machine", "shared")]
+    more = (f"{family.folder}/{each}" for each in family.more)
+    places = [f"-I{place / each}" for each in (family.folder, *more, "machine", "shared")]
     return ["g++", *_BASE, *family.base, *mcu.defines, *places]
 
 
@@ -137,7 +143,9 @@ def with_used_libraries(sketch: Sketch, command: list[str], main: Path) -> Sketc
             return sketch
         headers = {Path(each).resolve() for each in shlex.split(done.stdout.partition(":")[2])}
         for library in sketch.libraries:
-            if library not in used and any(library in header.parents for header in headers):
+            if library not in used and any(
+                library.resolve() in header.parents for header in headers
+            ):
                 used.append(library)
                 waiting += [f for f in compiled(library) if f.suffix in SOURCES]
     return replace(sketch, libraries=tuple(f for f in sketch.libraries if f in used))
@@ -150,7 +158,7 @@ def _core_object(folder: str, name: str, mcu: Mcu, common: list[str]) -> Path:
     def make(file: Path, scratch: Path) -> None:
         run([*common, "-O2", "-c", str(source), "-o", str(file)], name)
 
-    return cached(f"core-{name}", key, ".o", make)
+    return cached(f"core-{source.stem}", key, ".o", make)
 
 
 def _as_it_is(sketch: Sketch, scratch: Path) -> tuple[list[Path], list[Path]]:

@@ -14,15 +14,15 @@ from seatrial.errors import InputError
 from seatrial.printable import printable
 from seatrial.system.profile.profile import load_profile
 
-from .boards import board_mcu
 from .build import build_host
 from .component import Arduino
 from .emulator import build_emulator, build_firmware
-from .libraries import read_source
-from .limits import LIMITS
 from .mcus import MCUS, Mcu
-from .sketch import Sketch, find_sketch
-from .target_board import target_text
+from .sources.boards import board_mcu
+from .sources.libraries import read_source
+from .sources.limits import LIMITS
+from .sources.sketch import Sketch, find_sketch
+from .sources.target_board import target_text
 from .wiring import Wire, read_uarts, read_wires
 
 sketch_app = typer.Typer(no_args_is_help=True, pretty_exceptions_enable=False)

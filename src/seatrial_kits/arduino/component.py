@@ -13,7 +13,6 @@ from seatrial.model.component import NS, Component
 
 from .attached.peripherals import Peripherals
 from .board import DUTY, EDGE, EEPROM, MESSAGE, MORE, RESET, UART, WIDTH, Board, Event, Inputs
-from .boards import board_mcu
 from .build import build_host
 from .eeprom import ERASED, read_eeprom, write_eeprom
 from .emulator import build_emulator, build_firmware, firmware_file
@@ -21,11 +20,12 @@ from .mcus import CLOCK, Mcu
 from .measuring import check_ports, field_at_home, measured, signals
 from .part import Part, UartPart, part_failed
 from .parts.shelf import part_class
-from .platformio import project_of
 from .ports import ArduinoPorts
 from .pulses import Pulses
 from .real_board import RealBoard
-from .sketch import Sketch, find_sketch
+from .sources.boards import board_mcu
+from .sources.platformio import project_of
+from .sources.sketch import Sketch, find_sketch
 from .wiring import STEPPERS, UARTS, open_links, read_uarts, read_wires
 
 _WATCHED = ("servo", "pwm", "output", "step", "direction")

@@ -12,13 +12,13 @@ from pathlib import Path
 from seatrial.errors import InputError
 
 from .build import include_folders, refuse, run, run_all, with_used_libraries
-from .letter_case import with_other_cases
-from .libraries import ASSEMBLY, SOURCES
 from .mcus import Mcu
 from .resources import TEXTS, cached, contents, laid_out
-from .sketch import Sketch
+from .sources.letter_case import with_other_cases
+from .sources.libraries import ASSEMBLY, SOURCES
+from .sources.sketch import Sketch
+from .sources.unsupported import missing_headers
 from .toolchain import arduino_core, need, version
-from .unsupported import missing_headers
 
 _FLAGS = ("-Os", "-g", "-w", "-ffunction-sections", "-fdata-sections", "-DF_CPU=16000000L")
 _PINS = ("pinMode", "digitalWrite", "digitalRead", "analogWrite")

@@ -21,7 +21,7 @@ from seatrial.model.component import (
 from seatrial.model.unit_table import STANDARD_GRAVITY
 
 from .mcus import MCUS
-from .sketch import read_flags
+from .sources.sketch import read_flags
 from .wiring import (
     BLOCKS,
     GROUP,

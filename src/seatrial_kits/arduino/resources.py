@@ -17,8 +17,12 @@ from .core import util as core_util
 from .esp32 import driver as esp32_driver
 from .esp32 import freertos as esp32_freertos
 from .esp32 import libb64 as esp32_libb64
+from .esp32 import lwip as esp32_lwip
 from .esp32 import rom as esp32_rom
+from .esp32 import sha as esp32_sha
 from .esp32 import soc as esp32_soc
+from .esp32 import web as esp32_web
+from .esp32.web import uri as esp32_uri
 
 _FOLDERS = {
     "avr": avr,
@@ -28,9 +32,13 @@ _FOLDERS = {
     "esp32": esp32,
     "esp32/driver": esp32_driver,
     "esp32/freertos": esp32_freertos,
+    "esp32/sha": esp32_sha,
     "esp32/libb64": esp32_libb64,
+    "esp32/lwip": esp32_lwip,
     "esp32/rom": esp32_rom,
     "esp32/soc": esp32_soc,
+    "esp32/web": esp32_web,
+    "esp32/web/uri": esp32_uri,
     "machine": machine,
     "shared": shared,
 }

@@ -36,7 +36,7 @@ class Multirotor(Plant):
 
         O_i' = (min(max(command_i, 0), O_max) - O_i) / tau
         T_i  = max(k_T O_i^2 - k_in O_i w_i, 0) G_i,  Q_i = k_Q O_i^2 + J_r O_i'
-        m v' = m g e3 + R (F_drag - sum T_i e3) + F                    v over ground, {n}
+        m v' = m g e3 + R (F_drag + push - sum T_i e3) + F             v over ground, {n}
         I w' = sum r_i x (-T_i e3) + sum s_i Q_i e3 + M - w x (I w - J_r sum s_i O_i e3)
         k_T  = C_T rho D^4 / (4 pi^2),      k_Q = C_P rho D^5 / (8 pi^3)
         F_drag = -1/2 rho CdA |v_a| v_a - c_r (mean O / O_hover) (v_ax, v_ay, 0)
@@ -107,6 +107,7 @@ class Multirotor(Plant):
 
     command = Input("rad/s", "speed wanted of each rotor", axes=ROTORS)
     wind = Input("m/s", "velocity of the air, {n}", axes=("north", "east", "down"), optional=True)
+    push = Input("N", "further force at the CG, body axes", axes="xyz", frame="b", optional=True)
     supply_voltage = Input("V", "voltage at the motors", start=1000.0, optional=True)
     deck_position = Input("m", "origin of the craft in {n}", axes="xyz", frame="n")
     deck_velocity = Input("m/s", "velocity of the craft's origin, its body axes", axes="uvw")
@@ -156,6 +157,7 @@ class Multirotor(Plant):
         "command": [500.0, 520.0, 540.0, 560.0],
         "inflow": 1e-3,
         "wind": [2.0, -1.0, 0.3],
+        "push": [0.5, -0.3, 0.2],
     }
 
     def equations(
@@ -171,7 +173,7 @@ class Multirotor(Plant):
         height = ca.fmax(p.pad[2] - p.feet[2] - place[2], 0)
         over = inside(place, p.deck_size)
         wake = over * ca.exp(-((height / p.wake_length) ** 2)) * rotors.thrust
-        pull = own @ (_drag(air, x, p, rotors.hover) - rotors.thrust * _DOWN)
+        pull = own @ (_drag(air, x, p, rotors.hover) + u.push - rotors.thrust * _DOWN)
         acceleration = p.gravity * _DOWN + (pull + deck @ legs.force) / p.mass
         momentum = p.inertia * x.rates + rotors.momentum * _DOWN
         turning = rotors.moment + legs.moment - ca.cross(x.rates, momentum)

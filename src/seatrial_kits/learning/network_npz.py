@@ -12,11 +12,12 @@ import numpy as np
 
 from seatrial.errors import InputError, unknown
 
-from .network import LARGEST, Array, Steps
+from .network import LARGEST, Array, Steps, finite
 
 _LAYER = re.compile(r"([Wb])(0|[1-9]\d{0,3})")
-_SCALES = ("input_mean", "input_scale", "output_mean", "output_scale", "input_low", "input_high")
-_KEYS = ("W0", "b0", "W1", "b1", "activations", *_SCALES)
+_SCALES = ("input_mean", "input_scale", "output_mean", "output_scale")
+_LIMITS = ("input_low", "input_high", "output_low", "output_high")
+_KEYS = ("W0", "b0", "W1", "b1", "activations", *_SCALES, *_LIMITS)
 
 
 def read_npz(path: Path) -> Steps:
@@ -25,7 +26,8 @@ def read_npz(path: Path) -> Steps:
     Arrays ``W0``, ``b0``, ``W1``, ``b1`` ... are weights, a row for each output of the layer, and
     offsets; ``activations`` has a text for each layer. Optional, a number for each: the network
     takes (x - ``input_mean``) / ``input_scale``, and y ``output_scale`` + ``output_mean`` comes out
-    of it; x was between ``input_low`` and ``input_high`` in training.
+    of it; x was between ``input_low`` and ``input_high`` in training, and what comes out is limited
+    to ``output_low`` to ``output_high``.
 
     Raises InputError naming file and key.
     """
@@ -49,7 +51,16 @@ def read_npz(path: Path) -> Steps:
         found.dense(each, offsets, f"{path}: W{number}, b{number}")
         found.activate_as(texts[number], f"{path}: activations[{number}]")
     _scale(found, arrays, path, "output")
-    _ranges(found, arrays, path)
+    if (limits := _limits(arrays, path, "output", found.outputs)) is not None:
+        low, high = limits
+        middle, half = (low + high) / 2.0, (high - low) / 2.0
+        shrink = np.divide(1.0, half, out=np.zeros_like(half), where=half > 0.0)
+        where = f"{path}: output_low, output_high"
+        found.scale(shrink, -middle * shrink, where)
+        found.clip(-1.0, 1.0, where)
+        found.scale(half, middle, where)
+    if (limits := _limits(arrays, path, "input", found.inputs)) is not None:
+        found.low, found.high = limits
     return found
 
 
@@ -114,17 +125,19 @@ def _scale(found: Steps, arrays: dict[str, Any], path: Path, side: str) -> None:
     found.scale(1.0 / scale, -mean / scale, where)
 
 
-def _ranges(found: Steps, arrays: dict[str, Any], path: Path) -> None:
-    keys = [key for key in ("input_low", "input_high") if key in arrays]
+def _limits(arrays: dict[str, Any], path: Path, side: str, size: int) -> tuple[Array, Array] | None:
+    """Return lowest and highest values of the inputs or outputs, if the file has them."""
+    both = f"{side}_low", f"{side}_high"
+    keys = [key for key in both if key in arrays]
     if not keys:
-        return
+        return None
     if len(keys) == 1:
-        raise InputError(f"{path}: {keys[0]}: input_low and input_high are needed, both or none")
+        raise InputError(f"{path}: {keys[0]}: {' and '.join(both)} are needed, both or none")
     low, high = (_numbers(arrays, path, key, 1) for key in keys)
     for key, array in zip(keys, (low, high), strict=True):
-        if len(array) != found.inputs:
-            raise InputError(f"{path}: {key}: {found.inputs} are needed, found {len(array)}")
+        if len(finite(array, f"{path}: {key}")) != size:
+            raise InputError(f"{path}: {key}: {size} are needed, found {len(array)}")
     if not np.all(low <= high):
         place = int(np.argmin(low <= high))
-        raise InputError(f"{path}: input_low, input_high: {low[place]} to {high[place]} at {place}")
-    found.low, found.high = low, high
+        raise InputError(f"{path}: {', '.join(both)}: {low[place]} to {high[place]} at {place}")
+    return low, high

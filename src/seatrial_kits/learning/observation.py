@@ -31,8 +31,10 @@ class Program:
         self.operations: list[list[Any]] = []
         self.observed: list[int] = []
         """The operations whose results are the observations."""
+        self.nodes: list[ex.Expression] = []
+        """The observations, of inputs in SI by `pointed`."""
         self._places = {name: place for place, name in enumerate(units)}
-        self._units = {_dotted(name): text for name, text in units.items()}
+        self._units = {pointed(name): text for name, text in units.items()}
         self._known: dict[str, int] = {}
         bare = [re.escape(name) for name in units if "." not in name]
         self._names = re.compile(rf"(?<![\w.])({'|'.join(bare) or '(?!)'})(?![\w.(])")
@@ -43,21 +45,19 @@ class Program:
             node = self._parsed(text)
             exponents = node.exponents(self._units)
             self.observed.append(self._of(node))
+            self.nodes.append(node)
             return ex.unit_of(node, self._units, exponents)
         except InputError as error:
             raise InputError(str(error).replace(_BARE, "")) from None
 
     def _parsed(self, text: str) -> ex.Expression:
-        pointed = self._names.sub(lambda match: _BARE + match[0], text)
-        parsed = tree(f"{pointed} >= 0")
-        if not isinstance(parsed, Comparison):
-            raise InputError(f"{text!r}: a number is needed, got a condition")
-        if is_of_record(parsed.left):
+        node = number_of(self._names.sub(lambda match: _BARE + match[0], text))
+        if is_of_record(node):
             raise InputError(f"{text!r}: that needs a whole record, and there is the present")
-        for name in sorted(ex.signal_names(parsed.left)):
+        for name in sorted(ex.signal_names(node)):
             if name not in self._units:
                 raise InputError(unknown("input", name, self._places))
-        return parsed.left
+        return node
 
     def _of(self, node: ex.Expression) -> int:
         """Return the place of the operation whose result is a node's value."""
@@ -91,5 +91,14 @@ class Program:
         return self._known[key]
 
 
-def _dotted(name: str) -> str:
+def number_of(text: str) -> ex.Expression:
+    """Return an expression. Raises InputError for what is none."""
+    parsed = tree(f"{text} >= 0")
+    if not isinstance(parsed, Comparison):
+        raise InputError(f"{text!r}: a number or signal is needed, got a condition")
+    return parsed.left
+
+
+def pointed(name: str) -> str:
+    """Return the name of an input in expressions, which has a point."""
     return name if "." in name else f"{_BARE}{name}"

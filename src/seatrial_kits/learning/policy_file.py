@@ -5,6 +5,8 @@ from __future__ import annotations
 import json
 import keyword
 from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +17,9 @@ from seatrial.model.ports import FRAMES
 from seatrial.model.units import Unit, quantity, unit
 from seatrial.system.files import FileModel, read_toml, validated
 from seatrial.system.rig import duration_ns
+from seatrial.trial.criteria import expressions as ex
 
+from .network import Steps
 from .network_file import read_network
 from .observation import Program
 from .policy import RESERVED
@@ -73,21 +77,69 @@ def frozen_policy(path: Path) -> str:
     Raises InputError naming the file and the key for what does not fit, the network's file among
     them.
     """
+    return _Policy(path, _read(path)).text()
+
+
+@dataclass(frozen=True)
+class Meaning:
+    """What a policy's file says of a network that need not be there yet."""
+
+    network: Path
+    inputs: dict[str, str]
+    """Units by element."""
+    outputs: dict[str, str]
+    observed: list[ex.Expression]
+    """What the network takes, of the inputs in SI by `observation.pointed`."""
+    acted: list[str]
+    """The elements of the outputs, in the order in which the network gives them."""
+
+
+def meaning(path: Path) -> Meaning:
+    """Return what the file says, for a network that is to be trained.
+
+    Raises InputError naming the file and the key for what does not fit, and for ranges: they
+    follow from the training.
+    """
+    policy = _Policy(path, _read(path))
+    inputs, outputs = (
+        _units(policy.ports(key, ports))
+        for key, ports in (("inputs", policy.file.inputs), ("outputs", policy.file.outputs))
+    )
+    for key, entries in (("observe", policy.file.observe), ("act", policy.file.act)):
+        for number, entry in enumerate(entries):
+            for name in ("range", "trained"):
+                if getattr(entry, name, None) is not None:
+                    raise InputError(
+                        f"{path}: {key}.{number}.{name}: ranges follow from the training: leave "
+                        "them out"
+                    )
+    program, acts = Program(inputs), policy.acts(outputs)
+    for number, each in enumerate(policy.file.observe or [ObserveEntry(value=n) for n in inputs]):
+        with at(f"{path}: observe.{number}.value"):
+            program.add(each.value)
+    network = path.parent / policy.file.network
+    return Meaning(network, inputs, outputs, program.nodes, [entry.to for entry in acts])
+
+
+def _read(path: Path) -> PolicyFile:
     content, _ = read_toml(path)
     if "components" in content:
         raise InputError(f'{path}: it is a rig, no policy: rig = "..." puts it in place of fmu')
-    return _Policy(path, validated(PolicyFile, content, path)).text()
+    return validated(PolicyFile, content, path)
 
 
 class _Policy:
     def __init__(self, path: Path, file: PolicyFile) -> None:
         self.path, self.file = path, file
-        self.network = read_network(path.parent / file.network, file.network_output)
+
+    @cached_property
+    def network(self) -> Steps:
+        return read_network(self.path.parent / self.file.network, self.file.network_output)
 
     def text(self) -> str:
         """Return all of it. Raises InputError."""
         file = self.file
-        inputs, outputs = self._ports("inputs", file.inputs), self._ports("outputs", file.outputs)
+        inputs, outputs = self.ports("inputs", file.inputs), self.ports("outputs", file.outputs)
         if twice := sorted({*file.inputs} & {*file.outputs}):
             raise InputError(f"{self.path}: {twice[0]!r} is an input and an output")
         self._check_terminals([*file.inputs, *file.outputs])
@@ -123,7 +175,7 @@ class _Policy:
 
     # ------------------------------------------------------------------ ports
 
-    def _ports(self, key: str, entries: Mapping[str, str | PortEntry]) -> list[dict[str, Any]]:
+    def ports(self, key: str, entries: Mapping[str, str | PortEntry]) -> list[dict[str, Any]]:
         found = []
         for name, written in entries.items():
             where = f"{self.path}: {key}.{name}"
@@ -195,26 +247,33 @@ class _Policy:
 
     def _acted(self, units: Mapping[str, str]) -> tuple[list[list[float]], dict[str, int]]:
         """Return the ranges of the actions, and by output which action it is."""
-        entries = self.file.act or [ActEntry(to=name) for name in units]
-        places: dict[str, int] = {}
-        acted = []
-        for number, entry in enumerate(entries):
-            where = f"{self.path}: act.{number}"
-            if entry.to not in units:
-                raise InputError(f"{where}.to: {unknown('output', entry.to, units)}")
-            if entry.to in places:
-                raise InputError(f"{where}.to: {entry.to!r} is an earlier action already")
-            places[entry.to] = number
-            acted.append(self._range(entry.range, units[entry.to], f"{where}.range"))
-        if left := [name for name in units if name not in places]:
-            raise InputError(f"{self.path}: act: no action is output {left[0]!r}")
+        entries = self.acts(units)
+        acted = [
+            self._range(entry.range, units[entry.to], f"{self.path}: act.{number}.range")
+            for number, entry in enumerate(entries)
+        ]
         if len(entries) != self.network.outputs:
             what = "act" if self.file.act else "outputs"
             raise InputError(
                 f"{self.path}: {what}: {len(entries)} elements, and {self.file.network} gives "
                 f"{self.network.outputs}"
             )
-        return acted, places
+        return acted, {entry.to: number for number, entry in enumerate(entries)}
+
+    def acts(self, units: Mapping[str, str]) -> list[ActEntry]:
+        """Return an entry for each element of the outputs. Raises InputError."""
+        entries = self.file.act or [ActEntry(to=name) for name in units]
+        seen: set[str] = set()
+        for number, entry in enumerate(entries):
+            where = f"{self.path}: act.{number}"
+            if entry.to not in units:
+                raise InputError(f"{where}.to: {unknown('output', entry.to, units)}")
+            if entry.to in seen:
+                raise InputError(f"{where}.to: {entry.to!r} is an earlier action already")
+            seen.add(entry.to)
+        if left := [name for name in units if name not in seen]:
+            raise InputError(f"{self.path}: act: no action is output {left[0]!r}")
+        return entries
 
     def _range(
         self, written: list[Written] | None, measured: str, where: str, *, si: bool = False

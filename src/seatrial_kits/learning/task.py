@@ -18,9 +18,9 @@ from seatrial.trial.criteria import expressions as ex
 from seatrial.trial.criteria import formulas
 from seatrial.trial.criteria.grammar import tree
 from seatrial.trial.criteria.metrics import is_of_record
-from seatrial.trial.criteria.predicates import Comparison
 from seatrial_kits.campaigns.distributions import Law, read_distribution
 
+from .observation import number_of
 from .task_file import ActEntry, EndEntry, ObserveEntry, RewardEntry, TaskFile
 
 FOLDER = "harness/tasks"
@@ -172,12 +172,10 @@ class Task:
 
     def _expression(self, text: str, key: str) -> ex.Expression:
         with _at(f"{self.path}: {key}"):
-            parsed = tree(f"{text} >= 0")
-            if not isinstance(parsed, Comparison):
-                raise InputError(f"{text!r}: a number or signal is needed, got a condition")
-            if is_of_record(parsed.left):
+            found = number_of(text)
+            if is_of_record(found):
                 raise InputError(f"{text!r}: it needs a whole record; an agent has the present")
-            return parsed.left
+            return found
 
     def _formula(self, text: str, key: str) -> formulas.Formula:
         with _at(f"{self.path}: {key}"):

@@ -77,34 +77,31 @@ def import_log(
     if name == "run":
         raise InputError(f"{path}: is a run folder already")
     with reading(path):
-        log = from_zero(steady(read_log(path, name, named.pop("time", None))))
         wanted = Wanted(named, patterns, window_of(begin, end), step)
-        found = imported(log, wanted)
+        time = named.pop("time", None)
+        found = imported(from_zero(steady(read_log(path, name, time))), wanted)
     folder = claim_folder(out, path.stem, MANIFEST)
     span = max(float(found.time[-1] - found.time[0]), 1e-9)
     try:
         with Watch(path.name) as watch:
-            content = write_run(found, folder, name, criteria, outline,
-                                lambda share: watch.progress(share * span, span))  # fmt: skip
-        notes, rows = found.notes, len(found.time)
-        del found, log  # a long log is in memory once
-        page = write_report(folder, play=play)
+            run = write_run(found, folder, name, criteria, outline,
+                            lambda share: watch.progress(share * span, span))  # fmt: skip
+        page = write_report(folder, play=play, run=run)
     except BaseException:
         shutil.rmtree(folder, ignore_errors=True)
         raise
-    print_notes(notes)
-    units = {signal: each["unit"] for signal, each in content["signals"].items()}
+    print_notes(found.notes)
     answer.result = {
         "folder": str(folder),
         "format": name,
-        "rows": rows,
-        "signals": units,
-        "serves": content["log"]["serves"],
-        "notes": list(notes),
+        "rows": len(found.time),
+        "signals": found.units,
+        "serves": found.serves,
+        "notes": list(found.notes),
     }
     console.print(
-        f"{len(units)} signals in {rows} rows, from {content['start']:g} s to "
-        f"{content['stop']:g} s",
+        f"{len(found.units)} signals in {len(found.time)} rows, from {found.time[0]:g} s to "
+        f"{found.time[-1]:g} s",
         soft_wrap=True,
     )
     passed = print_records(folder)

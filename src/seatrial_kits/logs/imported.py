@@ -6,14 +6,14 @@ import csv
 import hashlib
 import io
 import json
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Container, Mapping, Sequence
 from dataclasses import asdict, dataclass, field
+from datetime import datetime
 from fnmatch import fnmatchcase
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from seatrial import __version__
 from seatrial.errors import InputError, unmatched
@@ -22,9 +22,17 @@ from seatrial.trial.criteria.criteria import parse
 from seatrial.trial.logs.channels import Array, Log
 from seatrial.trial.logs.formats import FORMATS
 from seatrial.trial.logs.quantities import QUANTITIES, Column, defaults
-from seatrial.trial.records.run_folder import MANIFEST, SIGNALS, TIMING, VERDICTS
+from seatrial.trial.records.run_folder import (
+    MANIFEST,
+    SIGNALS,
+    TIMING,
+    VERDICTS,
+    Run,
+    read_verdicts,
+)
 from seatrial.trial.running.output import write_json
 
+from .columns import Columns
 from .paired.common_time import WHOLE, Window
 from .paired.pairing import local_metres
 from .paired.resampling import Trace, served, trace
@@ -61,9 +69,11 @@ class Wanted:
 class Imported:
     """A log on one time axis (n,): signals by name with units, and which quantities they serve."""
 
-    log: Log
+    path: Path
+    start: datetime | None
+    """Date and time of the time 0, where they are known."""
     time: Array
-    signals: Mapping[str, Array]
+    signals: Columns
     units: Mapping[str, str]
     switches: frozenset[str]
     """Signals that are true or false."""
@@ -92,21 +102,21 @@ def imported(log: Log, wanted: Wanted) -> Imported:
     if not traces:
         raise InputError(f"{log.path}: no channel with a number in it")
     time = _axis(log, traces, motion, wanted)
-    signals, units, unknown = {}, {}, {}
-    for name, each in traces.items():
-        values, known = each.at(time)
-        signals[f"{COMPONENT}.{name}"], units[f"{COMPONENT}.{name}"] = values, each.unit
-        if not known.all():
-            unknown[name] = known
-    for name, known in unknown.items():
-        signal = f"{COMPONENT}.known.{name}"
-        signals[signal], units[signal] = known.astype(float), "1"
+    signals = Columns(time)
+    shares = {name: signals.add(f"{COMPONENT}.{name}", each) for name, each in traces.items()}
+    units = {f"{COMPONENT}.{name}": each.unit for name, each in traces.items()}
+    unknown = {name: share for name, share in shares.items() if share < 1.0}
+    for name in unknown:
+        signals.add_switch(f"{COMPONENT}.known.{name}", traces[name])
+        units[f"{COMPONENT}.known.{name}"] = "1"
     if unknown:
         notes.append(_unknown_note(unknown))
-    _complete_motion(signals, units, len(time), notes)
+    _complete_motion(signals, units, notes)
     switches = frozenset(f"{COMPONENT}.known.{name}" for name in unknown)
     serves = _serves(log, wanted.columns, signals)
-    return Imported(log, time, signals, units, switches, serves, home, (*log.notes, *notes))
+    return Imported(
+        log.path, log.start, time, signals, units, switches, serves, home, (*log.notes, *notes)
+    )
 
 
 def _motion(
@@ -171,7 +181,8 @@ def _axis(
     first, last = wanted.window
     of_table = next(iter(log.channels.values())).time
     if log.table and wanted.every is None:
-        time = of_table[np.isfinite(of_table) & (of_table >= first) & (of_table <= last)]
+        inside = np.isfinite(of_table) & (of_table >= first) & (of_table <= last)
+        time = of_table if inside.all() else of_table[inside]
     else:
         leading = motion or traces
         first = max(first, min(float(each.time[0]) for each in leading.values()))
@@ -194,19 +205,16 @@ def _axis(
     return time
 
 
-def _unknown_note(unknown: Mapping[str, NDArray[np.bool_]]) -> str:
-    shares = sorted(unknown, key=lambda name: float(np.mean(unknown[name])))
+def _unknown_note(unknown: Mapping[str, float]) -> str:
+    shares = sorted(unknown, key=lambda name: unknown[name])
     worst = ", ".join(
-        f"{name} in {100.0 * (1.0 - float(np.mean(unknown[name]))):.3g} % of the rows"
-        for name in shares[:4]
+        f"{name} in {100.0 * (1.0 - unknown[name]):.3g} % of the rows" for name in shares[:4]
     )
     more = f", and {len(shares) - 4} more channels" if len(shares) > 4 else ""
     return f"not known, with the nearest earlier value: {worst}{more}; see the signals log.known.*"
 
 
-def _complete_motion(
-    signals: dict[str, Array], units: dict[str, str], rows: int, notes: list[str]
-) -> None:
+def _complete_motion(signals: Columns, units: dict[str, str], notes: list[str]) -> None:
     """Add angles and depth of 0 to a motion with position and heading, which a craft has."""
     names = {port: f"{COMPONENT}.{port}" for port in _AXES}
     needed = ("position.x", "position.y", "attitude.psi")
@@ -214,15 +222,13 @@ def _complete_motion(
         return
     lacking = [port for port in _AXES if names[port] not in signals]
     for port in lacking:
-        signals[names[port]] = np.zeros(rows)
+        signals.add_zero(names[port])
         units[names[port]] = "m" if port.startswith("position") else "rad"
     if lacking:
         notes.append(f"{', '.join(_AXES[port] for port in lacking)}: not in the log, taken as 0")
 
 
-def _serves(
-    log: Log, columns: Mapping[str, Column], signals: Mapping[str, Array]
-) -> dict[str, str]:
+def _serves(log: Log, columns: Mapping[str, Column], signals: Container[str]) -> dict[str, str]:
     """Return the signal that serves each quantity."""
     found = {}
     for what, column in {**defaults(log), **columns}.items():
@@ -243,18 +249,29 @@ def write_run(
     criteria: Sequence[tuple[str, str]] = (),
     outline: Outline | None = None,
     progress: Callable[[float], None] = lambda _: None,
-) -> dict[str, Any]:
-    """Write a log as a run folder, whose manifest is there already, empty; return the manifest.
+) -> Run:
+    """Write a log as a run folder, whose manifest is there already, empty; return it as read.
 
     ``progress`` is called with the share of rows that are written. Raises OSError with the name of
     a file that cannot be.
     """
     content = _manifest(found, format_name, criteria, outline)
+    verdicts = verdicts_of(found, criteria)
     _write_signals(found, folder / SIGNALS, progress)
-    write_json(folder / VERDICTS, verdicts_of(found, criteria))
+    write_json(folder / VERDICTS, verdicts)
     write_json(folder / TIMING, {})
     write_json(folder / MANIFEST, content)
-    return content
+    return Run(
+        folder=folder,
+        time=found.time,
+        signals=found.signals,
+        units=dict(found.units),
+        manifest=content,
+        verdicts=read_verdicts(folder),
+        timing={},
+        truncated=False,
+        notes=(),
+    )
 
 
 def verdicts_of(found: Imported, criteria: Sequence[tuple[str, str]]) -> list[dict[str, Any]]:
@@ -273,15 +290,14 @@ def _write_signals(found: Imported, path: Path, progress: Callable[[float], None
     """Write the rows, `_CHUNK` at a time, numbers so that they read back exactly."""
     with path.open("w", encoding="utf-8", newline="") as file:
         csv.writer(file, lineterminator="\n").writerow(["time", *found.signals])
-        columns = [
-            found.signals[name].astype(np.int64) if name in found.switches else found.signals[name]
-            for name in found.signals
-        ]
         for first in range(0, len(found.time), _CHUNK):
             rows = slice(first, first + _CHUNK)
             text = io.StringIO()
             writer = csv.writer(text, lineterminator="\n")
-            cells = [found.time[rows].tolist(), *(column[rows].tolist() for column in columns)]
+            cells = [found.time[rows].tolist()]
+            for name in found.signals:
+                column = found.signals.rows(name, rows)
+                cells.append((column.astype(int) if name in found.switches else column).tolist())
             writer.writerows(zip(*cells, strict=True))
             file.write(text.getvalue())
             progress(min(1.0, (first + _CHUNK) / len(found.time)))
@@ -290,7 +306,7 @@ def _write_signals(found: Imported, path: Path, progress: Callable[[float], None
 def _manifest(
     found: Imported, format_name: str, criteria: Sequence[tuple[str, str]], outline: Outline | None
 ) -> dict[str, Any]:
-    path = found.log.path
+    path = found.path
     file = {"name": path.stem, "file": path.name, "sha256": content_hash(path)}
     title = f"{path.name}, {FORMATS.load(format_name).title}"
     steps = np.diff(found.time)
@@ -302,7 +318,7 @@ def _manifest(
         component["outline"] = {"length": outline.length, "beam": outline.beam}
     if found.home is not None:
         component["home"] = list(found.home)
-    start = found.log.start
+    start = found.start
     return {
         "format": 1,
         "seatrial": __version__,

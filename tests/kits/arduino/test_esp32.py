@@ -3,7 +3,7 @@
 import pytest
 
 from seatrial.errors import InputError, SimulationError
-from seatrial_kits.arduino.platformio import read_project
+from seatrial_kits.arduino.sources.platformio import read_project
 from tests.command import seatrial
 
 from .bench import Bench, need, write_sketch

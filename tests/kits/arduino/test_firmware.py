@@ -10,7 +10,7 @@ from seatrial.errors import InputError, SimulationError
 from seatrial_kits.arduino.component import Arduino
 from seatrial_kits.arduino.emulator import build_firmware
 from seatrial_kits.arduino.mcus import MCUS
-from seatrial_kits.arduino.sketch import find_sketch
+from seatrial_kits.arduino.sources.sketch import find_sketch
 
 from .bench import Bench, need, write_sketch
 

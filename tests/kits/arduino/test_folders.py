@@ -3,8 +3,8 @@
 import pytest
 
 from seatrial.errors import InputError
-from seatrial_kits.arduino.letter_case import with_other_cases
-from seatrial_kits.arduino.sketch import find_sketch
+from seatrial_kits.arduino.sources.letter_case import with_other_cases
+from seatrial_kits.arduino.sources.sketch import find_sketch
 
 SKETCH = "void setup() {}\nvoid loop() {}\n"
 

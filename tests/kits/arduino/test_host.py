@@ -10,8 +10,8 @@ import serial
 
 from seatrial.errors import InputError, SimulationError
 from seatrial_kits.arduino.component import Arduino
-from seatrial_kits.arduino.dialect import narrowed
-from seatrial_kits.arduino.sketch import with_prototypes
+from seatrial_kits.arduino.sources.dialect import narrowed
+from seatrial_kits.arduino.sources.sketch import with_prototypes
 
 from .bench import Bench, write_sketch
 

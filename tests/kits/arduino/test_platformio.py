@@ -4,7 +4,7 @@ import pytest
 
 from seatrial.errors import InputError
 from seatrial_kits.arduino.component import Arduino
-from seatrial_kits.arduino.platformio import read_project
+from seatrial_kits.arduino.sources.platformio import read_project
 from tests.command import seatrial
 
 from .bench import Bench, need

@@ -7,6 +7,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from seatrial.errors import InputError
+from seatrial.physics.environment.downwash import Downwash
 from seatrial_kits.drone.multirotor import Multirotor
 
 HERE = Path(__file__).parents[2] / "reference" / "drone"
@@ -140,9 +142,47 @@ def test_it_slides_where_the_deck_is_steeper_than_its_friction():
         friction=0.18,
         **STOPPED,
     )
-    apart, turned = compared("slide", sliding)
+    speeds = {}
+
+    def each(t):
+        speeds[t] = np.linalg.norm(sliding.get("velocity_n"))
+
+    apart, turned = compared("slide", sliding, each)
     assert apart < 1e-3
     assert turned < 2e-3
+    # Regularised friction is whole from 0.15 s on.
+    (first, slow), *_, (last, fast) = [(t, v) for t, v in speeds.items() if t > 0.15]
+    down = G * (math.sin(tilted[0]) - 0.18 * math.cos(tilted[0]))
+    assert (fast - slow) / (last - first) == pytest.approx(down, rel=0.005)
+
+
+@pytest.mark.parametrize(
+    ("degrees", "friction", "slides", "tips"),
+    [
+        pytest.param(25.0, 0.6, False, False, id="below the angle of friction"),
+        pytest.param(36.0, 0.6, True, False, id="above the angle of friction"),
+        pytest.param(34.0, 2.0, False, False, id="below the angle of the feet"),
+        pytest.param(42.0, 2.0, False, True, id="above the angle of the feet"),
+    ],
+)
+def test_it_slides_and_tips_where_statics_says(degrees, friction, slides, tips):
+    # atan(0.6) = 31 deg; weight over the outer feet: atan(0.2 / 0.25) = 38.7 deg.
+    a = math.radians(degrees)
+    place = np.array([0.0, math.sin(a), -math.cos(a)]) * 0.25
+    standing = drone(
+        position_start=place.tolist(),
+        attitude_start=[a, 0.0, 0.0],
+        pad=[0, 0, 0],
+        deck_attitude=[a, 0.0, 0.0],
+        deck_size=[40, 40],
+        friction=friction,
+        **STOPPED,
+    )
+    for _ in range(500):
+        standing.advance(standing.now, STEP)
+    assert (abs(standing.get("attitude")[0] - a) > math.radians(15.0)) == tips
+    if not tips:
+        assert (abs(standing.get("slip")[1]) > 0.05) == slides
 
 
 def test_it_lands_on_a_deck_that_heaves_and_rolls():
@@ -225,6 +265,20 @@ def test_wake_on_the_deck(height):
     assert over.get("force") == pytest.approx([0, 0, loads[height]], rel=1e-6)
 
 
+@pytest.mark.parametrize(
+    ("height", "share"), [(0.2, 0.014), (0.3, 0.006), (0.45, 0.006), (0.6, 0.006)]
+)
+def test_its_ground_effect_is_near_that_of_the_published_load(height, share):
+    near = drone(
+        position_start=[0, 0, -0.2 - height + 0.05],
+        command=[HOVER] * 4,
+        feet=[0.2, 0.2, 0.0],
+        deck_size=[4, 4],
+    )
+    gain = near.get("thrust") / WEIGHT
+    assert gain == pytest.approx(Downwash("wake").ground_effect(height), rel=share)
+
+
 @pytest.mark.parametrize("wind", ["3", "8", "15"])
 def test_it_leans_into_the_wind(wind):
     theta, speed = CLOSED[
@@ -248,6 +302,20 @@ def test_a_climbing_rotor_loses_what_its_inflow_says():
     assert climbing.get("thrust") == pytest.approx(WEIGHT - 4 * 1e-3 * HOVER * 2.0, rel=1e-9)
 
 
+def test_a_further_force_acts_along_its_body_axes():
+    pushed = drone(
+        position_start=[0, 0, -10],
+        attitude_start=[0.0, 0.0, math.pi / 2],
+        command=[HOVER] * 4,
+        push=[3.0, -2.0, 1.0],
+        **FAR,
+    )
+    assert pushed.get("acceleration") == pytest.approx([0.3, -0.2, 0.1], abs=1e-8)
+    pushed.advance(0.0, STEP)
+    # Bow to the east; drag takes less than a thousandth of it.
+    assert pushed.get("velocity_n") == pytest.approx([0.2 * STEP, 0.3 * STEP, 0.1 * STEP], rel=1e-3)
+
+
 def test_rotors_follow_their_supply_and_commands_within_limits():
     full = CLOSED["largest speed [rad/s]"]
     for voltage, command, wanted in ((22.2, 9e3, full), (11.1, 9e3, full / 2), (25.0, -5.0, 0.0)):
@@ -257,6 +325,18 @@ def test_rotors_follow_their_supply_and_commands_within_limits():
         for _ in range(500):
             spun.advance(spun.now, STEP)
         assert spun.get("rotor_speed") == pytest.approx([wanted] * 4, abs=1e-4)
+
+
+@pytest.mark.parametrize("wrong", [math.nan, math.inf])
+def test_a_command_that_is_no_number_is_refused_by_its_name(wrong):
+    with pytest.raises(InputError, match="command"):
+        drone(position_start=[0, 0, -10], command=[HOVER, wrong, HOVER, HOVER], **FAR)
+
+
+@pytest.mark.parametrize(("name", "wrong"), [("mass", 0.0), ("inertia", [0.25, 0.0, 0.4])])
+def test_a_body_without_mass_is_refused(name, wrong):
+    with pytest.raises(InputError, match=name):
+        drone(**{name: wrong})
 
 
 def test_it_turns_over_without_a_singular_attitude():

@@ -103,3 +103,19 @@ def test_the_report_has_the_pads_velocity():
     # rates x (0, 0, -0.2) = (-0.04, 0.02, 0), turned by 90 degrees.
     assert radio.get("pad_velocity") == pytest.approx([-0.52, 0.96, 0.2])
     assert radio.get("reported") == 0.0
+
+
+@pytest.mark.slow
+def test_errors_and_losses_of_the_report():
+    radio = started(DeckReport("radio"), delay=0.0)
+    names = ("deck_attitude", "deck_rates", "pad_velocity")
+    found, heard = [], 0
+    for _ in range(10_000):
+        if radio.get("valid"):
+            heard += 1
+            found.append([*radio.get(names[0]), *radio.get(names[1]), *radio.get(names[2])])
+        radio.advance(radio.now, 0.05)
+    expected = [math.radians(0.3)] * 3 + [math.radians(0.2)] * 3 + [0.02] * 3
+    assert np.std(found, axis=0) == pytest.approx(expected, rel=0.04)
+    # 3.9 standard deviations of a share of 10 000 messages.
+    assert 1 - heard / 10_000 == pytest.approx(0.02, abs=3.9 * math.sqrt(0.02 * 0.98 / 10_000))

@@ -219,6 +219,8 @@ def test_the_same_bytes_from_every_carrier(period: str, tmp_path: Path) -> None:
     arrays = network((3, 20, 4, 5, 3, 2), names, 5) | {
         "input_low": [0.0] * 3,
         "input_high": [1.0] * 3,
+        "output_low": [-100.0, -100.0],
+        "output_high": [100.0, 5.0],
     }
     write(tmp_path, PLAIN.replace('period = "100 ms"\n', period), arrays)
     (tmp_path / "plants.py").write_text(PLANT, "utf-8")

@@ -70,6 +70,18 @@ def without(key: str) -> dict[str, Any]:
             LAYERS | {"input_low": [1.0] * 3, "input_high": [2.0, 0.0, 2.0]},
             r"input_low, input_high: 1\.0 to 0\.0 at 1",
         ),
+        (
+            LAYERS | {"output_low": [0.0] * 2},
+            r"net\.npz: output_low: output_low and output_high are needed, both or none",
+        ),
+        (
+            LAYERS | {"output_low": [0.0] * 2, "output_high": [np.nan, 1.0]},
+            r"net\.npz: output_high: nan at \[0\]",
+        ),
+        (
+            LAYERS | {"output_low": [0.0] * 2, "output_high": [1.0] * 3},
+            r"net\.npz: output_high: 2 are needed, found 3",
+        ),
     ],
 )
 def test_networks_with_mistakes(arrays: dict[str, Any], message: str, tmp_path: Path) -> None:

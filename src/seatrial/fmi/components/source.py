@@ -10,7 +10,7 @@ import re
 import sys
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -21,8 +21,9 @@ from ...kits import OURS
 from ...model.component import Component
 from ...plugins import service
 from .index import component_class, components, shipped_names, title
+from .stored_table import SUFFIX, stored_head
 from .table import table_component
-from .table_file import SUFFIXES, frozen_table
+from .table_file import LARGEST, SUFFIXES, frozen_table
 
 # The method is there because pythonfmu's binary releases the script's globals once too often: only
 # a function that is defined in the script keeps them alive at the second instantiation.
@@ -126,12 +127,14 @@ class TableSource(ComponentSource):
     """A table of values over time, which is a component with its columns as outputs."""
 
     text: str = ""
-    """The table, as `frozen_table` returns it."""
+    """The table, as `frozen_table` and `stored_head` return it."""
+    is_stored: bool = False
+    """Whether its values stay in a file."""
 
     @property
     def script(self) -> bytes:
-        """Text of the FMU's slave script, with all values."""
-        return _TABLE_SCRIPT.format(name=self.name, text=self.text).encode()
+        """Text of the FMU's slave script, with all values. Raises InputError for too many."""
+        return _TABLE_SCRIPT.format(name=self.name, text=self._whole()).encode()
 
     @property
     def title(self) -> str:
@@ -146,14 +149,25 @@ class TableSource(ComponentSource):
         """Return the lines of a script that give the class a name."""
         return (
             f"from seatrial.fmi.components.table import table_component\n"
-            f"{alias} = table_component({self.text!r})"
+            f"{alias} = table_component({self._whole()!r})"
         )
+
+    def _whole(self) -> str:
+        """Return the table with its values, which an FMU carries."""
+        if self.is_stored:
+            raise InputError(
+                f"{self.origin}: a table of more than {LARGEST >> 20} MiB plays in process alone, "
+                "and is no FMU: --engine direct"
+            )
+        return self.text
 
 
 def table_source(path: Path, types: Mapping[str, type] | None = None) -> TableSource:
     """Return the component of a file of values over time; see `frozen_table`. Raises InputError."""
     if not path.is_file():
         raise InputError(f"there is no table {path}")
+    if path.suffix == SUFFIX:
+        return replace(_table(path, stored_head(path)), is_stored=True)
     return _table(path, frozen_table(path, types))
 
 
@@ -190,7 +204,7 @@ def find_source(text: str, relative_to: Path) -> ComponentSource | Path:
     """
     if text.endswith(".toml"):
         return _of_data((relative_to / text).resolve())
-    if text.endswith(SUFFIXES):
+    if text.endswith((*SUFFIXES, SUFFIX)):
         return table_source((relative_to / text).resolve())
     if text.endswith(".fmu"):
         path = (relative_to / text).resolve()

@@ -10,6 +10,7 @@ from typing import Any, ClassVar
 
 from ...errors import InputError
 from ...model.component import Component, Output, Parameter, seconds
+from .stored_table import stored_columns
 
 TYPES = {"real": float, "integer": int, "boolean": bool, "text": str}
 
@@ -66,8 +67,10 @@ class Table(Component):
 
 @lru_cache(maxsize=64)
 def table_component(text: str) -> type[Table]:
-    """Return the component that plays a table, as `table_file.frozen_table` writes it."""
+    """Return the component that plays a table, as `frozen_table` and `stored_head` have it."""
     content = json.loads(text)
+    if "stored" in content:
+        content["times_ns"], content["columns"] = stored_columns(content)
     outputs = {
         name: Output(unit, f"column of {content['file']}", type=TYPES[kind])
         for name, kind, unit, _, _ in content["columns"]

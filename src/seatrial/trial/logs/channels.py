@@ -152,8 +152,13 @@ def distinguished(
 def channel(
     name: str, unit: str | None, time: object, values: object, rows: object | None = None
 ) -> Channel:
-    """Return a channel of any sequences; rows are counted from 1. Infinite values become NaN."""
-    numbers = np.array(values, np.float64)
-    numbers[~np.isfinite(numbers)] = np.nan
+    """Return a channel of any sequences; rows are counted from 1. Infinite values become NaN.
+
+    Arrays and buffers of doubles are not copied: those of a long log are in memory once.
+    """
+    numbers = np.asarray(values, np.float64)
+    infinite = np.isinf(numbers)
+    if infinite.any():
+        numbers = np.where(infinite, np.nan, numbers)
     counted = np.arange(1, len(numbers) + 1) if rows is None else rows
     return Channel(name, unit, np.asarray(time, np.float64), numbers, np.asarray(counted, np.int64))

@@ -171,9 +171,13 @@ def series(
         raise InputError(
             f"{log.place(found, int(bad[0]))}: a finite number is needed, found {text!r}"
         )
-    kept = np.flatnonzero(np.isfinite(found.values) & np.isfinite(found.time))
-    values = sign * (found.values[kept] * factor + offset)
-    result = Series(quantity, what, log, found, found.time[kept], values, kept)
+    known = np.isfinite(found.values) & np.isfinite(found.time)
+    kept, time, values = np.flatnonzero(known), found.time, found.values
+    if not known.all():
+        time, values = time[kept], values[kept]
+    if (sign * factor, sign * offset) != (1.0, 0.0):
+        values = sign * (values * factor + offset)
+    result = Series(quantity, what, log, found, time, values, kept)
     if not len(kept):
         raise InputError(f"{log.path}: {what}: the {log.noun} {name!r} has no value")
     beyond = np.flatnonzero(np.abs(values) > quantity.most * (1.0 + 1e-9))

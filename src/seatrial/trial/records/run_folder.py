@@ -37,7 +37,7 @@ class Run:
 
     folder: Path
     time: FloatArray
-    signals: dict[str, Any]
+    signals: Mapping[str, Any]
     units: dict[str, str]
     manifest: dict[str, Any]
     verdicts: list[dict[str, Any]]

@@ -32,6 +32,7 @@ from .plots import MAX_POINTS, Line, Mark, Panel, deck_figure, time_figure, trac
 from .sea_section import sea_figures
 from .templates import environment
 from .tethers import tether_figures
+from .thinning import thinned
 from .timing_section import pacing, step_times
 from .wind_and_marks import add_wind_and_marks
 
@@ -111,14 +112,18 @@ def write_report(
     library: str | None = None,
     play: Play | None = None,
     viewer: str | None = None,
+    run: Run | None = None,
 ) -> Path:
     """Write ``report.html`` into a run folder and return its path. Raises InputError.
+
+    ``run`` is that of the folder, where it is in memory already.
 
     The page has Plotly's JavaScript in it, or takes it from the address ``library``, relative to
     it: pages of a campaign share one, and likewise the ``viewer`` of what ``play`` returns.
     """
-    run = load_run(folder)
-    played = None if play is None else play(run)
+    run = run or load_run(folder)
+    drawn = thinned(run)
+    played = None if play is None else play(drawn)
     convergence = load_convergence(run.folder)
     metrics = metrics_of(run)
     page = render(
@@ -132,7 +137,7 @@ def write_report(
         verdicts=run.verdicts,
         metrics=metrics,
         metrics_figure=metrics_figure(run, metrics),
-        sections=list(_sections(run)),
+        sections=list(_sections(drawn)),
         parameters=list(parameter_tables(run)),
         timing=list(_flat({k: v for k, v in run.timing.items() if k not in _OWN_TABLES})),
         step_times=step_times(run.timing),

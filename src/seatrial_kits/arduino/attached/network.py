@@ -11,7 +11,7 @@ from seatrial.errors import InputError, SimulationError
 from seatrial.links.hardware import check_host, check_listening
 
 from ..board import Inputs
-from .tcp import LISTEN, Tcp
+from .tcp import LISTEN, Tcp, own_port
 
 CHANNEL = 1
 _HEAD = struct.Struct("<BBHI")
@@ -67,7 +67,8 @@ class Network:
             self._sockets.pop(number).close()
         elif kind == _PACKET and number in self._sockets:
             with contextlib.suppress(OSError):  # nobody there: as on the air
-                target = (self._reached(address), port)
+                host = self._reached(address)
+                target = (host, own_port(port) if host.startswith("127.") else port)
                 self._sockets[number].sendto(message[_HEAD.size :], target)
 
     def close(self) -> None:
@@ -81,11 +82,12 @@ class Network:
         one = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
         one.setblocking(False)
         try:
-            one.bind((self.address, port))
+            one.bind((self.address, own_port(port)))
         except OSError as error:
             one.close()
             raise SimulationError(
-                f"{self.name}: UDP port {port} at {self.address} cannot be opened: {error.strerror}"
+                f"{self.name}: UDP port {own_port(port)} at {self.address} cannot be opened: "
+                f"{error.strerror}"
             ) from None
         self._sockets[number] = one
 

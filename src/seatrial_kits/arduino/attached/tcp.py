@@ -87,12 +87,12 @@ class Tcp:
         server.setblocking(False)
         server.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         try:
-            server.bind((self.address, _own(port)))
+            server.bind((self.address, own_port(port)))
             server.listen()
         except OSError as error:
             server.close()
             raise SimulationError(
-                f"{self.name}: TCP port {_own(port)} at {self.address} cannot be opened: "
+                f"{self.name}: TCP port {own_port(port)} at {self.address} cannot be opened: "
                 f"{error.strerror}"
             ) from None
         self._servers[number] = server
@@ -101,7 +101,7 @@ class Tcp:
         one = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
         one.setblocking(False)
         one.bind((self.address, 0))
-        one.connect_ex((host, _own(port) if host.startswith("127.") else port))
+        one.connect_ex((host, own_port(port) if host.startswith("127.") else port))
         self._connections[number] = _Connection(one, opened=False)
 
     def _accept(self, number: int, server: socket.socket, put: Put) -> None:
@@ -161,5 +161,6 @@ class Tcp:
         return True
 
 
-def _own(port: int) -> int:
+def own_port(port: int) -> int:
+    """Return the port here that a board's port is."""
     return port + _MOVED if 0 < port < _LOWEST else port

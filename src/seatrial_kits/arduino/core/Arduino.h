@@ -127,6 +127,7 @@ int32_t random(int32_t least, int32_t most);
 void randomSeed(uint32_t seed);
 
 #include "basics.h"
+#include "binary.h"
 #define word(...) makeWord(__VA_ARGS__)
 
 void setup();

@@ -3,6 +3,7 @@
 #define Arduino_h
 
 #include <ctype.h>
+#include <inttypes.h>
 #include <math.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -98,7 +99,6 @@ template <typename A, typename B> constexpr auto max(A a, B b) -> decltype(a > b
 #define clockCyclesPerMicrosecond() ((long)F_CPU / 1000000L)
 #define digitalPinIsValid(pin) ((pin) >= 0 && (pin) < board::PINS)
 #define digitalPinToInterrupt(pin) ((pin) >= 0 && (pin) < board::PINS ? (pin) : NOT_AN_INTERRUPT)
-#define NUM_DIGITAL_PINS (board::PINS)
 #define interrupts() sei()
 #define noInterrupts() cli()
 #define word(...) makeWord(__VA_ARGS__)
@@ -144,6 +144,7 @@ void randomSeed(unsigned long seed);
 uint32_t esp_random();
 
 #include "basics.h"
+#include "binary.h"
 
 void setup();
 void loop();

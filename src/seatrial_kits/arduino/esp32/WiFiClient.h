@@ -11,10 +11,11 @@ public:
     explicit WiFiClient(tcp::Shared one) : one_(one) {}
     int connect(IPAddress address, uint16_t port) override { return connect(address, port, 3000); }
     int connect(const char *host, uint16_t port) override { return connect(host, port, 3000); }
-    int connect(IPAddress address, uint16_t port, int32_t timeout_ms);
-    int connect(const char *host, uint16_t port, int32_t timeout_ms);
+    virtual int connect(IPAddress address, uint16_t port, int32_t timeout_ms);
+    virtual int connect(const char *host, uint16_t port, int32_t timeout_ms);
     size_t write(uint8_t data) override { return write(&data, 1); }
     size_t write(const uint8_t *data, size_t size) override;
+    size_t write(Stream &from); /* to its end */
     using Print::write;
     int available() override;
     int read() override;
@@ -36,5 +37,7 @@ public:
 private:
     tcp::Shared one_;
 };
+
+typedef WiFiClient NetworkClient; /* Of Arduino-ESP32 3. */
 
 #endif

@@ -29,4 +29,6 @@ private:
     int server_ = -1;
 };
 
+typedef WiFiServer NetworkServer;
+
 #endif

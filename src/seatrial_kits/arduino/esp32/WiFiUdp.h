@@ -36,4 +36,6 @@ private:
     size_t next_ = 0;
 };
 
+typedef WiFiUDP NetworkUDP;
+
 #endif

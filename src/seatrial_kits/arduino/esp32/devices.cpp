@@ -1,5 +1,8 @@
-/* What hangs on the board: Serial, SoftwareSerial, Wire, SPI, EEPROM. Costs as in api.cpp. */
+/* What hangs on the board: Serial, SoftwareSerial, Bluetooth, Wire, SPI, EEPROM. Costs as in api.cpp. */
 #include "Arduino.h"
+#ifdef BOARD_ESP32
+#include "BluetoothSerial.h"
+#endif
 #include "EEPROM.h"
 #include "SPI.h"
 #include "SoftwareSerial.h"
@@ -70,6 +73,22 @@ size_t HardwareSerial::setRxBufferSize(size_t size)
     machine::set_ring(number_, (int)size);
     return size;
 }
+
+#ifdef BOARD_ESP32
+bool BluetoothSerial::begin(const String &, bool, bool)
+{
+    HardwareSerial::begin((unsigned long)machine::line_rate(board::UARTS - 1));
+    tell();
+    return true;
+}
+
+void BluetoothSerial::tell()
+{
+    esp_spp_cb_param_t value = {};
+    if (opened_ && hasClient())
+        opened_(ESP_SPP_SRV_OPEN_EVT, &value);
+}
+#endif
 
 /* What the core does after each loop(), and, for onReceive, its task of events. */
 void serve_serial_events()

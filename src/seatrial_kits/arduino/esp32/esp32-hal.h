@@ -47,6 +47,7 @@ uint64_t timerRead(hw_timer_t *timer);
 uint64_t timerReadMicros(hw_timer_t *timer);
 uint64_t timerReadMilis(hw_timer_t *timer);
 
+uint32_t READ_PERI_REG(uint32_t place); /* of registers by their addresses, that of random numbers */
 inline bool setCpuFrequencyMhz(uint32_t) { return true; }
 inline uint32_t getCpuFrequencyMhz() { return 240; }
 inline uint32_t getApbFrequency() { return 80000000; }

@@ -52,13 +52,23 @@ wl_status_t WiFiClass::begin(const char *ssid, const char *, int32_t, const uint
     charge(16000);
     ssid_ = ssid;
     joined_ = true;
+    for (WiFiEvent_t event : {ARDUINO_EVENT_WIFI_STA_START, ARDUINO_EVENT_WIFI_STA_CONNECTED, ARDUINO_EVENT_WIFI_STA_GOT_IP})
+        tell(event);
     return WL_CONNECTED;
+}
+
+void WiFiClass::tell(WiFiEvent_t event)
+{
+    for (const auto &[one, handler] : std::vector(handlers_))
+        if (handler && (one == event || one == ARDUINO_EVENT_MAX))
+            handler(event, WiFiEventInfo_t());
 }
 
 bool WiFiClass::softAP(const char *ssid, const char *, int, int, int, bool)
 {
     charge(16000);
     ssid_ = ssid;
+    tell(ARDUINO_EVENT_WIFI_AP_START);
     return true;
 }
 

@@ -1,11 +1,13 @@
-/* The flash: Preferences, LittleFS and SPIFFS as files in the folder of the flash. */
+/* The flash and a card: Preferences and file systems as files in the folder of the flash. */
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <vector>
 
+#include "FFat.h"
 #include "LittleFS.h"
 #include "Preferences.h"
+#include "SD.h"
 #include "SPIFFS.h"
 #include "machine.h"
 
@@ -14,11 +16,14 @@ using machine::charge;
 
 constexpr uint32_t READ = 800, WRITE = 16000; /* 50 us and 1 ms, as flash takes */
 
-fs::FS LittleFS("littlefs"), SPIFFS("spiffs");
+fs::FS LittleFS("littlefs"), SPIFFS("spiffs"), FFat("ffat");
+fs::SDFS SD("sd");
+fs::SDMMCFS SD_MMC("sd");
 
 namespace fs {
 
 struct File::Open {
+    FS *system;
     std::string path; /* as the sketch has it */
     disk::path place;
     FILE *file = nullptr; /* null: a folder */
@@ -67,6 +72,7 @@ File FS::open(const char *path, const char *mode, bool create)
 {
     charge(READ);
     auto made = std::make_shared<File::Open>();
+    made->system = this;
     made->path = path;
     made->place = place(path);
     std::error_code failed;
@@ -126,10 +132,8 @@ File File::openNextFile(const char *mode)
     if (!open_ || open_->next >= open_->entries.size())
         return File();
     disk::path place = open_->entries[open_->next++];
-    std::string below = open_->place.lexically_relative(machine::folder()).string(); /* littlefs/... */
-    FS *system = below.rfind("spiffs", 0) == 0 ? &SPIFFS : &LittleFS;
     std::string base = open_->path == "/" ? "" : open_->path;
-    return system->open((base + "/" + place.filename().string()).c_str(), mode);
+    return open_->system->open((base + "/" + place.filename().string()).c_str(), mode);
 }
 
 } // namespace fs

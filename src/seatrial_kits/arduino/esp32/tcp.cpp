@@ -157,6 +157,20 @@ size_t WiFiClient::write(const uint8_t *data, size_t size)
     return size;
 }
 
+size_t WiFiClient::write(Stream &from)
+{
+    size_t n = 0;
+    for (uint8_t some[1436]; from.available() > 0;) {
+        size_t size = 0;
+        for (int c; size < sizeof some && (c = from.read()) >= 0;)
+            some[size++] = (uint8_t)c;
+        n += write(some, size);
+        if (!size)
+            break;
+    }
+    return n;
+}
+
 int WiFiClient::available() { charge(16); return one_ ? (int)one_->in.size() : 0; }
 int WiFiClient::peek() { return one_ && !one_->in.empty() ? (uint8_t)one_->in[0] : -1; }
 void WiFiClient::flush() { if (one_) one_->take(one_->in.size()); }

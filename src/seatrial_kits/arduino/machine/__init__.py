@@ -6,6 +6,7 @@ DATA_FILES = (
     "WString.h",
     "basics.cpp",
     "basics.h",
+    "binary.h",
     "crashes.h",
     "interrupts.h",
     "machine.cpp",

@@ -34,6 +34,7 @@ int room(uint8_t uart);
 void send(uint8_t uart, uint8_t data);
 void drain(uint8_t uart);
 bool overflowed(uint8_t uart); /* a byte found no room since this was last read */
+double line_rate(uint8_t uart); /* of its line, baud; 0 without one */
 int line_to(int rx_pin);   /* the UART whose line ends at this pin, or -1 */
 int line_from(int tx_pin); /* the one whose line begins there */
 bool placed(uint8_t uart, bool rx); /* whether that end of its line is at a pin of the profile */

@@ -184,6 +184,7 @@ static int line_with(int Uart::*end, int pin)
 int line_to(int rx_pin) { return line_with(&Uart::rx_pin, rx_pin); }
 int line_from(int tx_pin) { return line_with(&Uart::tx_pin, tx_pin); }
 
+double line_rate(uint8_t uart) { return uarts[uart].line_baud; }
 bool placed(uint8_t uart, bool rx) { return (rx ? uarts[uart].rx_pin : uarts[uart].tx_pin) >= 0; }
 void set_ring(uint8_t uart, int size) { uarts[uart].ring = size; }
 

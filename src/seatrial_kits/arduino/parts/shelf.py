@@ -20,6 +20,7 @@ from .lsm303 import Lsm303Accelerometer, Lsm303Magnetometer
 from .ma3 import Ma3
 from .mpu6050 import Mpu6050
 from .ms5837 import Ms5837
+from .nrf24 import Nrf24
 from .pca9685 import Pca9685
 from .pixy import Pixy
 from .qmc5883l import Qmc5883l
@@ -43,6 +44,7 @@ SHELF: dict[str, type[Part]] = {
     "ma3": Ma3,
     "mpu6050": Mpu6050,
     "ms5837": Ms5837,
+    "nrf24": Nrf24,
     "pca9685": Pca9685,
     "pixy": Pixy,
     "qmc5883l": Qmc5883l,

@@ -14,7 +14,7 @@ from seatrial.trial.records.run_folder import Run
 
 from ..run_log import of_craft
 from .common_time import GAP
-from .resampling import Trace, served, trace, unwrapped
+from .resampling import Trace, served, trace, unwrapped, usual_time
 
 _PLACE = ("latitude", "longitude")
 _SPEEDS = {"yaw_rate": "rates.r"}
@@ -145,7 +145,9 @@ def _signal(run: Run, name: str) -> Trace:
 def run_trace(run: Run, name: str) -> Trace:
     """Return a signal of numbers of a run as a trace."""
     unit = run.units[name]
-    usual = float(np.median(np.diff(run.time))) if len(run.time) > 1 else np.inf
-    values = unwrapped(np.asarray(run.signals[name], np.float64), unit)
-    kept = np.append(np.diff(run.time) > 0.0, True)[: len(run.time)]
-    return Trace(name, unit, run.time[kept], values[kept], False, GAP * usual)
+    time, values = run.time, unwrapped(np.asarray(run.signals[name], np.float64), unit)
+    usual = usual_time(time, np.inf)
+    if not np.all(time[1:] > time[:-1]):
+        kept = np.append(np.diff(time) > 0.0, True)[: len(time)]
+        time, values = time[kept], values[kept]
+    return Trace(name, unit, time, values, False, GAP * usual)

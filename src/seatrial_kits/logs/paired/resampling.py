@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +18,8 @@ from .common_time import GAP
 
 HELD_MOST = 16
 """A channel of a log that is no table, with so few different values, is a state that is held."""
+_BLOCK = 1 << 16
+"""Instants that are looked up at once: a long log takes no more memory than its values."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,18 +35,27 @@ class Trace:
     gap: float
     """Two entries further apart, s, have nothing between them."""
 
-    @property
+    @cached_property
     def usual(self) -> float:
         """Usual time from an entry to the next, s; 0 for one entry."""
-        return float(np.median(np.diff(self.time))) if len(self.time) > 1 else 0.0
+        return usual_time(self.time, 0.0)
 
     def at(self, times: Array) -> tuple[Array, NDArray[np.bool_]]:
         """Return values at rising ``times``, and whether each is known.
 
         Linear between two entries, or the last one's where it is held. Before the first entry, in
         a gap and, but for what is held, after the last the nearest earlier one stands, and is not
-        known.
+        known. At the trace's own times the values are not copied.
         """
+        if times is self.time:
+            return self.values, np.ones(len(times), np.bool_)
+        found, known = np.empty(len(times)), np.empty(len(times), np.bool_)
+        for first in range(0, len(times), _BLOCK):
+            block = slice(first, first + _BLOCK)
+            found[block], known[block] = self._block(times[block])
+        return found, known
+
+    def _block(self, times: Array) -> tuple[Array, NDArray[np.bool_]]:
         before = np.clip(np.searchsorted(self.time, times, side="right") - 1, 0, None)
         after = np.minimum(before + 1, len(self.time) - 1)
         found = self.values[before].copy()
@@ -94,19 +106,35 @@ def served(log: Log, what: str, column: Column | None = None) -> Trace | None:
 
 def _made(name: str, said: str, time: Array, values: Array, *, held: bool) -> Trace:
     """Return a trace of entries in the order of their times."""
-    order = np.argsort(time, kind="stable")
-    time, values = time[order], values[order]
-    kept = np.append(np.diff(time) > 0.0, True)[: len(time)]
-    time, values = time[kept], values[kept]
-    usual = float(np.median(np.diff(time))) if len(time) > 1 else math.inf
-    gap = math.inf if held else GAP * usual
+    if not np.all(time[1:] > time[:-1]):
+        order = np.argsort(time, kind="stable")
+        time, values = time[order], values[order]
+        kept = np.append(np.diff(time) > 0.0, True)[: len(time)]
+        time, values = time[kept], values[kept]
+    gap = math.inf if held else GAP * usual_time(time, math.inf)
     return Trace(name, said, time, unwrapped(values, said), held, gap)
+
+
+def usual_time(time: Array, alone: float) -> float:
+    """Return the median time, s, from an entry (n,) to the next; ``alone`` for less than two."""
+    return float(np.median(np.diff(time), overwrite_input=True)) if len(time) > 1 else alone
 
 
 def unwrapped(values: Array, said: str) -> Array:
     """Return an angle without jumps of more than half a turn; other values as they are."""
     turn = turn_of(said)
-    return values if turn is None else np.unwrap(values, period=turn)
+    if turn is None or len(values) < 2:
+        return values
+    turns = np.diff(values)
+    turns /= turn
+    np.rint(turns, out=turns)
+    if not turns.any():
+        return values
+    np.cumsum(turns, out=turns)
+    turns *= turn
+    found = values.copy()
+    found[1:] -= turns
+    return found
 
 
 def turn_of(said: str) -> float | None:

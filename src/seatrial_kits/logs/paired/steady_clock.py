@@ -23,22 +23,25 @@ def steady(log: Log) -> Log:
     the entry before, one usual step later. Single entries that come late are put in their place.
     Of entries of one channel with equal times the last stays. All three are counted in notes.
     """
-    rows, times = _entries(log)
-    if not len(rows):
-        return log
-    # Of a log in which topics come one after the other, time goes back between them alone.
-    is_set = any(len(clock_jumps(each)[0]) for each in _finite_times(log))
-    at, shifts = clock_jumps(times) if is_set else (rows[:0], times[:0])
     notes = list(log.notes)
+    at, shifts = np.empty(0, np.int64), np.empty(0)
+    # Of a log in which topics come one after the other, time goes back between them alone.
+    if any(len(clock_jumps(each)[0]) for each in _finite_times(log)):
+        rows, times = _entries(log)
+        at, shifts = clock_jumps(times)
+        at = rows[at]
     if len(at):
-        first = f"the first before {log.row} {rows[at[0]]}, by {-shifts[0]:+.6g} s"
+        first = f"the first before {log.row} {at[0]}, by {-shifts[0]:+.6g} s"
         notes.append(
             f"the clock was set {_times(len(at))}, {first}: the record goes on without jump"
         )
     disordered = doubled = 0
     channels = {}
     for name, each in log.channels.items():
-        moved = _moved(each, rows[at], shifts)
+        if not len(at) and np.all(each.time[1:] > each.time[:-1]):
+            channels[name] = each  # as it is in memory: the times of a long table are there once
+            continue
+        moved = _moved(each, at, shifts)
         late = int(np.count_nonzero(np.diff(moved.time) < 0.0))
         if late:
             moved = _at(moved, np.argsort(moved.time, kind="stable"))
@@ -55,7 +58,8 @@ def steady(log: Log) -> Log:
 def _finite_times(log: Log) -> Iterator[Array]:
     """Yield the times of each channel; of a table, whose channels have the same, once."""
     for each in list(log.channels.values())[: 1 if log.table else None]:
-        yield each.time[np.isfinite(each.time)]
+        finite = np.isfinite(each.time)
+        yield each.time if finite.all() else each.time[finite]
 
 
 def _times(count: int) -> str:
@@ -69,7 +73,13 @@ def from_zero(log: Log) -> Log:
     if all(abs(end) < LATEST for pair in ends for end in pair):
         return log
     first = min(begin for begin, _ in ends)
-    channels = {name: replace(each, time=each.time - first) for name, each in log.channels.items()}
+    shifted: dict[int, Array] = {}  # by the array: the channels of a table share theirs
+    for each in log.channels.values():
+        if id(each.time) not in shifted:
+            shifted[id(each.time)] = each.time - first
+    channels = {
+        name: replace(each, time=shifted[id(each.time)]) for name, each in log.channels.items()
+    }
     note = f"times are from the first entry on, at {first:.6f} s"
     return replace(
         log, channels=channels, start=log.start or date_of(first), notes=(*log.notes, note)
@@ -81,7 +91,7 @@ def _entries(log: Log) -> tuple[NDArray[np.int64], Array]:
     if log.table:
         one = next(iter(log.channels.values()))
         finite = np.isfinite(one.time)
-        return one.rows[finite], one.time[finite]
+        return (one.rows, one.time) if finite.all() else (one.rows[finite], one.time[finite])
     rows = np.concatenate([each.rows for each in log.channels.values()])
     times = np.concatenate([each.time for each in log.channels.values()])
     finite = np.isfinite(times)

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -13,8 +11,6 @@ from typing import Any
 import numpy as np
 
 from seatrial.errors import InputError
-from seatrial.files.whole_file import write_whole
-from seatrial.fmi.components.table_file import LARGEST
 from seatrial.model.component import NS, seconds
 from seatrial.system.assembling.assembly import assemble
 from seatrial.system.flattening import load_rig
@@ -28,11 +24,13 @@ from seatrial.trial.logs.channels import Array, Log
 
 from ..paired.common_time import Window
 from ..paired.resampling import Trace
-from ..played import rows_of
 from .asked import SPEED, YAW, Asked, Traces, traces_of
+from .tables import write_table
 
 COMPONENT = "log"
-TABLE, _RIG = "log.csv", "system.toml"
+_RIG = "system.toml"
+_MOST_RECORDED = 200_000
+"""Rows of the record of a vehicle, whose signals are in memory when they are compared."""
 _ORDERS = {YAW: "pilot.orders.manual.yaw", SPEED: "pilot.orders.manual.surge"}
 _VEHICLE = """\
 title = "{vehicle} alone"
@@ -110,17 +108,23 @@ def prepared(
     window = window_of(
         traces.outputs, fed or [*traces.motion.values()], asked.window, str(log.path)
     )
-    write_table(traces.outputs, window, folder / TABLE, str(log.path))
-    trial = _trial(log, driven, traces, window, has_pilot and bool(orders), folder)
-    trial = _without_settings(trial, [*traces.feeds])
-    trial = replace(trial, rig=_fed(trial.rig, traces, folder / TABLE))
     notes: list[str] = []
+    trial = _trial(log, driven, traces, window, has_pilot and bool(orders), folder, notes)
+    trial = _without_settings(trial, [*traces.feeds])
+    table = write_table(traces.outputs, window, folder, trial.rig.step_ns)
+    trial = replace(trial, rig=_fed(trial.rig, traces, table))
     trial = _started(trial, traces, window, driven.changes, notes)
     return Prepared(_with_criteria(trial, checks), traces, window, tuple(notes))
 
 
 def _trial(
-    log: Log, driven: Driven, traces: Traces, window: Window, has_pilot: bool, folder: Path
+    log: Log,
+    driven: Driven,
+    traces: Traces,
+    window: Window,
+    has_pilot: bool,
+    folder: Path,
+    notes: list[str],
 ) -> Trial:
     changes, name = dict(driven.changes), driven.name
     if name is not None and driven.vehicle is not None:
@@ -136,13 +140,18 @@ def _trial(
     chosen = {k.partition(".")[2]: v for k, v in changes.items() if k.startswith("choices.")}
     step = load_rig(rig, folder, chosen).step_ns
     usual = [each.usual for each in traces.outputs.values() if each.usual > 0.0]
-    every = max(round(min(usual, default=1.0) * NS / step), 1) * step
+    length = _length(window, step)
+    steps = max(round(min(usual, default=1.0) * NS / step), 1)
+    fewest = -(-length // (step * _MOST_RECORDED))
+    if fewest > steps:
+        notes.append(f"recorded and compared every {fewest * step / NS:g} s: the run is long")
+    every = min(max(steps, fewest) * step, length)
     path = folder / f"{log.path.stem}-shadow.toml"
     text = _TRIAL.format(
         title=json.dumps(f"{log.path.name} plays into {driven.vehicle or name}"),
         rig=json.dumps(rig),
-        stop=json.dumps(_stop(window, step)),
-        every=json.dumps(f"{min(every, _length(window, step))} ns"),
+        stop=json.dumps(f"{length} ns"),
+        every=json.dumps(f"{every} ns"),
     )
     path.write_text(text, encoding="utf-8")
     return load_trial(str(path), changes=changes, origin="--set")
@@ -247,34 +256,6 @@ def window_of(traces: Mapping[str, Trace], needed: list[str], window: Window, wh
         )
         raise InputError(f"{where}: no time is common to {spans}")
     return first, last
-
-
-def write_table(traces: Mapping[str, Trace], window: Window, path: Path, where: str) -> None:
-    """Write traces in a window, which becomes the time 0, as a table of values over time.
-
-    The rows are at all entries of all, between which values are linear, or held. A trace with gaps
-    has a switch NAME_valid. Raises InputError, with ``where``, for one too large to be played.
-    """
-    times = rows_of(traces.values(), window)
-    heads, columns = ["time [s]"], [(times - window[0]).tolist()]
-    for name, each in traces.items():
-        values, known = each.at(times)
-        held = " held" if each.held else ""
-        heads.append(f"{name} [{each.unit or '1'}{held}]")
-        columns.append(values.tolist())
-        if not known.all():
-            heads.append(f"{name}_valid [boolean]")
-            columns.append(np.where(known, "true", "false").tolist())
-    if len(times) * len(columns) * 10 > LARGEST:
-        raise InputError(
-            f"{where}: {len(times)} rows of {len(columns)} columns are too many to be played; "
-            "--from and --to take a part"
-        )
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(heads)
-    writer.writerows(zip(*columns, strict=True))
-    write_whole(path, text.getvalue())
 
 
 _FITTED = 20.0

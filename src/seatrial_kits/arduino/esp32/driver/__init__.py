@@ -3,6 +3,7 @@
 DATA_FILES = (
     "adc.h",
     "gpio.h",
+    "ledc.cpp",
     "ledc.h",
     "rtc_io.h",
     "twai.h",

@@ -8,9 +8,9 @@ import subprocess
 from collections import Counter
 from pathlib import Path
 
+from ..resources import TEXTS
 from .libraries import ASSEMBLY, included, read_source
 from .limits import absent
-from .resources import TEXTS
 from .sketch import Sketch
 from .target_board import unconditional
 from .tokens import tokens

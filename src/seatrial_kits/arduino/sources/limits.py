@@ -29,16 +29,16 @@ LIMITS = {
 """As `seatrial sketch check` prints it."""
 
 _ABSENT = {
-    r"BluetoothSerial\.h|BLE\w*\.h|NimBLE\w*\.h|esp_bt\w*\.h|esp_gap\w*\.h": "Bluetooth",
-    r"esp_netif\w*\.h|esp_event\.h|WiFiMulti\.h": "the radio below WiFi.h and esp_now.h",
-    r"WebServer\.h|DNSServer\.h|HTTP\w+\.h": "web servers and clients of its own",
+    r"BLE\w*\.h|NimBLE\w*\.h|esp_bt\w*\.h|esp_gap\w*\.h|esp_spp\w*\.h": "Bluetooth LE",
+    r"esp_netif\w*\.h|esp_event\.h|esp_mesh\w*\.h|ETH\.h": "the radio below WiFi.h and esp_now.h",
+    r"esp_http\w*\.h|esp_websocket\w*\.h|mqtt_client\.h": "ESP-IDF's web beside Arduino's",
     r"AsyncUDP\.h|lwip/.*": "the network below WiFi.h and AsyncTCP.h",
-    r"WiFiClientSecure\.h|mbedtls/.*": "encryption",
+    r"mbedtls/.*|esp_tls\.h": "encryption",
     r"esp_camera\.h|camera_\w+\.h|img_converters\.h": "the camera",
     r"esp_sleep\.h|esp_pm\.h|ulp\w*\.h": "sleep",
-    r"esp_ota_ops\.h|ArduinoOTA\.h|ESPmDNS\.h": "updates and names over the network",
-    r"SD_MMC\.h|FFat\.h|sd_diskio\.h": "file systems besides LittleFS and SPIFFS",
-    r"soc/.*|rom/.*|hal/.*|xtensa/.*|esp32/.*": "registers",
+    r"esp_ota_ops\.h|HTTPUpdate\w*\.h|esp_https_ota\.h": "updates of its program",
+    r"sd_diskio\.h": "what lies below SD.h",
+    r"soc/.*|rom/.*|hal/.*|xtensa/.*|esp32\w*/.*": "registers",
     r"driver/(?:mcpwm|pcnt|rmt|i2s|i2c|uart|spi_\w+|dac|touch_pad)\w*\.h": "ESP-IDF's own drivers",
     r"nvs\w*\.h|esp_partition\.h|esp_spiffs\.h|esp_vfs\w*\.h": "the flash below Preferences.h",
 }

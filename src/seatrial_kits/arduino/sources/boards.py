@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
-from .mcus import MCUS, Mcu
+from ..mcus import MCUS, Mcu
 from .platformio import DEFAULT_MCU, project_mcu, project_of, read_project
 
 _FQBN = re.compile(r"(?:default_fqbn\s*:|\"board\"\s*:\s*\"|fqbn\s*:)\s*\"?([\w.:-]+)")

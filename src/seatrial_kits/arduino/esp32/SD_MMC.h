@@ -1,0 +1,2 @@
+/* A card at the pins of SDMMC: see SD.h. */
+#include "SD.h"

@@ -1,0 +1,2 @@
+/* A part of WiFi.h. */
+#include "WiFi.h"

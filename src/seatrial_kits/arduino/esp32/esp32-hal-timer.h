@@ -1,0 +1,2 @@
+/* A part of esp32-hal.h. */
+#include "esp32-hal.h"

@@ -1,0 +1,2 @@
+/* A part of Arduino.h. */
+#include "Arduino.h"

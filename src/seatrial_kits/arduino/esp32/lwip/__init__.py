@@ -1,0 +1,3 @@
+"""What libraries include of the network below WiFi."""
+
+DATA_FILES = ("tcpbase.h",)

@@ -1,0 +1,3 @@
+"""Digests of the chip."""
+
+DATA_FILES = ("sha_parallel_engine.h",)
