@@ -121,7 +121,7 @@ def test_a_criterion_that_fails_is_status_one(tmp_path: Path) -> None:
         ),
         (["run", "otter", "--vehicle", "bluerov2"], "--vehicle names another one, 'bluerov2'"),
         (["report", "nowhere"], "nowhere"),
-        (["compare", "nowhere", "neither"], "nowhere"),
+        pytest.param(["compare", "nowhere", "neither"], "nowhere", marks=needs_kits("logs")),
         (["fmu", "build", "trhuster"], "did you mean 'thruster'"),
         (["fmu", "build", "hull.fmu"], "there is no FMU"),
         (["fmu", "describe", "boat.py:Boat"], "there is no file"),

@@ -17,6 +17,7 @@ from seatrial.trial.running.run import run_trial
 from tests.command import seatrial
 from tests.kit import needs_kits
 
+pytestmark = needs_kits("fitted")
 NAME = "my-boat_2"
 VEHICLE, PILOT = (f"harness/vehicles/{NAME}/{file}.toml" for file in ("vehicle", "pilot"))
 PROFILE = f"hil_profiles/{NAME}.toml"
@@ -112,7 +113,6 @@ def test_the_profile_is_sound(made):
         assert profile.notes(section) == []
 
 
-@needs_kits("fitted")
 @every_made
 def test_the_pilot_follows_the_body(made):
     """A heavier body is a heavier one for its pilot; the file has each number once."""
@@ -185,13 +185,12 @@ def test_its_mission_runs_for_ground_stations(made):
     assert done.returncode == 0, done.stderr
 
 
-@needs_kits("nmea", "fitted")
+@needs_kits("nmea")
 def test_a_vehicle_under_an_autopilot_without_a_trial_of_its_own_sets_out(made):
     done = run(made, NAME, "--autopilot", "nmea0183", "--set", "stop=1 s")
     assert "it gets under way to the east" in done.stdout
 
 
-@needs_kits("fitted")
 def test_a_trial_of_the_same_name_comes_first(made):
     path = made / f"harness/trials/{NAME}.toml"
     path.parent.mkdir()
@@ -204,7 +203,6 @@ def test_a_trial_of_the_same_name_comes_first(made):
 # ---------------------------------------------------------------------- what moves it
 
 
-@needs_kits("fitted")
 @pytest.mark.parametrize("made", ["rov"], indirect=True)
 def test_eight_thrusters_drive_it_as_manual_control_says(made):
     pilot, hull = "autopilot.pilot", "vehicle.hull"
@@ -219,7 +217,6 @@ def test_eight_thrusters_drive_it_as_manual_control_says(made):
         assert max(map(abs, speeds.values())) < 0.03
 
 
-@needs_kits("fitted")
 @pytest.mark.parametrize(
     ("made", "channel", "seconds"),
     [("ship", "rudder.pulse", 20), ("auv", "rudder.pulse", 4)],
@@ -234,7 +231,6 @@ def test_a_rudder_pulse_above_neutral_turns_it_to_starboard(made, channel, secon
         assert simulation.get("hull.attitude.psi") > 0.01
 
 
-@needs_kits("fitted")
 @pytest.mark.parametrize("made", ["azimuth"], indirect=True)
 def test_azimuths_turned_to_starboard_turn_it_to_port(made):
     """A servo rests within its dead band, 0.2 deg."""
@@ -263,7 +259,7 @@ def test_its_drawing_moves_with_its_parts(made, request):
     assert {each["port"] for each in moved} == MOVING[like_of(request)]
 
 
-@needs_kits("mavlink", "fitted")
+@needs_kits("mavlink")
 @pytest.mark.sampled(2)
 @every_made
 def test_its_components_are_drawn(made):
@@ -337,7 +333,7 @@ def test_there_must_be_a_profile_to_add_to(tmp_path):
 # ---------------------------------------------------------------------- profiles cut short
 
 
-@needs_kits("mavlink", "fitted")
+@needs_kits("mavlink")
 @pytest.mark.parametrize("made", ["usv", "auv"], indirect=True)
 def test_under_guidance_its_profile_needs_actuators_and_sensors_only(made):
     path = made / PROFILE
@@ -352,7 +348,7 @@ def test_under_guidance_its_profile_needs_actuators_and_sensors_only(made):
     assert "unknown section 'links.ground'" in done.stderr
 
 
-@needs_kits("mavlink", "nmea", "fitted")
+@needs_kits("mavlink", "nmea")
 def test_what_a_link_takes_by_default_is_a_note(made):
     path = made / PROFILE
     text = path.read_text("utf-8")
