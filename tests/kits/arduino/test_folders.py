@@ -3,6 +3,7 @@
 import pytest
 
 from seatrial.errors import InputError
+from seatrial_kits.arduino.build import with_used_libraries
 from seatrial_kits.arduino.sources.letter_case import with_other_cases
 from seatrial_kits.arduino.sources.sketch import find_sketch
 
@@ -52,3 +53,14 @@ def test_without_other_cases_nothing_changes(tmp_path):
     place = folder_of(tmp_path / "one", one_dot_ino='#include "boat.h"\n' + SKETCH, boat_dot_h="")
     sketch = find_sketch(place)
     assert with_other_cases(sketch, ["g++", f"-I{place}"], tmp_path / "cases") is sketch
+
+
+def test_a_library_may_be_a_link_to_its_folder(tmp_path):
+    folder_of(tmp_path / "clone", compass_dot_h="int heading();", compass_dot_cpp="")
+    shelf = tmp_path / "shelf"
+    shelf.mkdir()
+    (shelf / "compass").symlink_to(tmp_path / "clone")
+    place = folder_of(tmp_path / "one", one_dot_ino="#include <compass.h>\n" + SKETCH)
+    sketch = find_sketch(place, str(shelf))
+    used = with_used_libraries(sketch, ["g++", f"-I{shelf / 'compass'}"], tmp_path / "whole.cpp")
+    assert [library.name for library in used.libraries] == ["compass"]
