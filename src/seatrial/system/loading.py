@@ -112,7 +112,7 @@ def _part(
     from ..fmi.building.export import cached_fmu
     from ..fmi.loading.load import load_fmu
 
-    loaded = replace(load_fmu(cached_fmu(source, code)), origin=source.folder)
+    loaded = replace(load_fmu(cached_fmu(source.portable(), code)), origin=source.folder)
     instance, sha256 = _of_fmu(loaded, entry, name, timeout_s)
     return Part(name, entry.fmu, instance, sha256, code, every, undecided=known.undecided)
 

@@ -21,7 +21,7 @@ from ...kits import OURS
 from ...model.component import Component
 from ...plugins import service
 from .index import component_class, components, shipped_names, title
-from .stored_table import SUFFIX, stored_head
+from .stored_table import SUFFIX, content_of, stored_head
 from .table import table_component
 from .table_file import LARGEST, SUFFIXES, frozen_table
 
@@ -79,6 +79,10 @@ class ComponentSource:
         """What it is, for listings; of a user's file, its class."""
         return title(self.name) if self.folder is None else self.class_name
 
+    def portable(self) -> ComponentSource:
+        """Return this; raises InputError for one that runs in this process alone."""
+        return self
+
     def component_class(self) -> type[Component]:
         """Return the component's class, from the modules as they lie on disk.
 
@@ -133,8 +137,8 @@ class TableSource(ComponentSource):
 
     @property
     def script(self) -> bytes:
-        """Text of the FMU's slave script, with all values. Raises InputError for too many."""
-        return _TABLE_SCRIPT.format(name=self.name, text=self._whole()).encode()
+        """Text of the FMU's slave script, with all values, or the hash of those in a file."""
+        return _TABLE_SCRIPT.format(name=self.name, text=content_of(self.text)).encode()
 
     @property
     def title(self) -> str:
@@ -149,17 +153,17 @@ class TableSource(ComponentSource):
         """Return the lines of a script that give the class a name."""
         return (
             f"from seatrial.fmi.components.table import table_component\n"
-            f"{alias} = table_component({self._whole()!r})"
+            f"{alias} = table_component({self.portable().text!r})"
         )
 
-    def _whole(self) -> str:
-        """Return the table with its values, which an FMU carries."""
+    def portable(self) -> TableSource:
+        """Return this; raises InputError for a table whose values no FMU can carry."""
         if self.is_stored:
             raise InputError(
                 f"{self.origin}: a table of more than {LARGEST >> 20} MiB plays in process alone, "
                 "and is no FMU: --engine direct"
             )
-        return self.text
+        return self
 
 
 def table_source(path: Path, types: Mapping[str, type] | None = None) -> TableSource:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import json
 from collections.abc import Callable, Sequence
 from pathlib import Path
@@ -51,7 +52,16 @@ def stored_head(path: Path) -> str:
         except ValueError:
             raise InputError(f"{path}: no table that seatrial shadow has written") from None
         place = {"stored": str(path), "offset": file.tell(), "stamp": stamp(path)}
-    return json.dumps({**head, **place}, separators=(",", ":"))
+        digest = hashlib.file_digest(file, "sha256").hexdigest()
+    return json.dumps({**head, **place, "sha256": digest}, separators=(",", ":"))
+
+
+def content_of(text: str) -> str:
+    """Return the text of a table without the place of its file: equal for equal values."""
+    if '"stored":' not in text:
+        return text
+    head = json.loads(text)
+    return json.dumps({key: head[key] for key in ("file", "rows", "columns", "sha256")})
 
 
 def stored_columns(head: dict[str, Any]) -> tuple[Sequence[int], list[list[Any]]]:
