@@ -9,12 +9,12 @@ from functools import partial
 from parts import part
 from parts.can import ports
 from parts.markdown import table
-from seatrial.links.leg import leg_status
-from seatrial.links.satellites import sky
+from seatrial_kits.nmea.leg import leg_status
 from seatrial_kits.nmea.nmea0183.codec import encode
 from seatrial_kits.nmea.nmea0183.component import Nmea0183
 from seatrial_kits.nmea.nmea0183.readings import Readings
 from seatrial_kits.nmea.nmea0183.sentences import SENTENCES
+from seatrial_kits.nmea.satellites import sky
 
 _TIME = datetime.datetime(2018, 9, 1, 12, 0, 0, tzinfo=datetime.UTC)
 _KNOWN = Readings(

@@ -7,13 +7,13 @@ from pathlib import Path
 from typing import Any, ClassVar
 
 from seatrial.errors import InputError
-from seatrial.links.player import Player, Recording
 from seatrial.model.component import Input, Output, Parameter, terminal
 from seatrial.plugins import offered
 
 from .frame import Frame
 from .node import CanNode
 from .operations import Confirm
+from .playing import Player, Recording
 from .recorded import recorded_frames
 
 

@@ -4,15 +4,17 @@ from __future__ import annotations
 
 import base64
 import binascii
+import io
 import re
 from collections import Counter, defaultdict
 from collections.abc import Callable, Iterator, Mapping
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from seatrial.errors import InputError
 from seatrial.trial.logs.reading_progress import open_text
+from seatrial.trial.records.run_folder import ends_with_newline
 
 from .frame import FD_LENGTHS, Frame
 
@@ -20,6 +22,8 @@ VECTOR = b"LOGG"
 _BINARY = (".blf", ".asc", ".trc", ".mf4")
 """Files that python-can reads, by their names; .blf by its content, too."""
 _ERROR_FRAME = 0x20000000
+_BYTE_ORDER_MARK = "\xef\xbb\xbf"
+"""At the beginning of a text in UTF-8 that Windows has written, as Latin-1."""
 _LOOKED_AT = 40
 """Lines at the beginning of a text, of which one has to be a frame."""
 _GLOBAL = 255
@@ -101,7 +105,8 @@ def is_recording(path: Path, head: bytes) -> bool:
     """Return whether a file is one of `recorded_frames`, by its first bytes and its name."""
     if head.startswith(VECTOR) or path.suffix.lower() in _BINARY:
         return not path.is_dir()
-    lines = head.decode("latin-1").splitlines()[:_LOOKED_AT]
+    text = head.decode("latin-1").removeprefix(_BYTE_ORDER_MARK)
+    lines = text.splitlines()[:_LOOKED_AT]
     return any(_parsed(line) is not None for line in lines)
 
 
@@ -134,7 +139,9 @@ def _by_python_can(path: Path, skipped: Counter[str], *, is_vector: bool) -> Ite
     from .messages import frame_of
 
     try:
-        reader = can.BLFReader(str(path)) if is_vector else can.LogReader(str(path))
+        reader = can.BLFReader(str(path)) if is_vector else _text_reader(path, skipped)
+        if is_vector and path.stat().st_size < _said_size(path):
+            skipped["part of the file is cut off at its end"] += 1
         with reader:
             for row, entry in enumerate(reader, 1):
                 # python-can takes a frame of CAN FD without data in .asc for a remote one.
@@ -149,6 +156,25 @@ def _by_python_can(path: Path, skipped: Counter[str], *, is_vector: bool) -> Ite
         raise InputError(f"{path}: no log that python-can reads: {error}") from None
 
 
+def _text_reader(path: Path, skipped: Counter[str]) -> Any:
+    """Return python-can's reader of a file; of a text, without a last line that is cut."""
+    import can
+
+    texts = {".asc": can.ASCReader, ".trc": can.TRCReader}
+    reader = texts.get(path.suffix.lower())
+    if reader is None or ends_with_newline(path):
+        return can.LogReader(str(path))
+    text = path.read_text("utf-8", errors="ignore")
+    skipped["line is cut at the end of the file"] += 1
+    return reader(io.StringIO(text[: text.rfind("\n") + 1]))
+
+
+def _said_size(path: Path) -> int:
+    """Return the size, bytes, that the header of a .blf says; 0 of one that was not closed."""
+    with path.open("rb") as file:
+        return int.from_bytes(file.read(24)[16:], "little")
+
+
 def _of_text(
     path: Path, skipped: Counter[str], is_fast: Callable[[int], bool]
 ) -> Iterator[Recorded]:
@@ -157,6 +183,7 @@ def _of_text(
     day, before = 0.0, None
     with open_text(path, "latin-1") as file:
         for row, line in enumerate(file, 1):
+            line = line.removeprefix(_BYTE_ORDER_MARK) if row == 1 else line
             if not line.strip() or line.lstrip().startswith(("#", "//")):
                 continue
             found = _parsed(line)

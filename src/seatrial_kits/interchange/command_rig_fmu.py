@@ -14,9 +14,9 @@ from seatrial.system.assembling.assembly import assemble
 from seatrial.system.rig import Rig
 from seatrial.system.system import Engine, System
 from seatrial.system.unread import leave_out_unread
-from seatrial.trial.files.rig_changes import changed_rig, set_values
 from seatrial_kits.native.engine import carry_natively
 
+from .rig_changes import changed_rig, set_values
 from .rig_fmu.native import build_native_rig, in_weather, why_not_native
 from .rig_fmu.python import build_python_rig
 

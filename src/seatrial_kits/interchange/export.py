@@ -10,10 +10,10 @@ from seatrial.errors import InputError
 from seatrial.model.component import seconds
 from seatrial.system.assembling.assembly import assemble
 from seatrial.system.system import System
-from seatrial.trial.files.rig_changes import changed_rig, set_values
 from seatrial.trial.files.trial import Trial, is_trial, load_trial
 
 from .osp.writing import write_osp
+from .rig_changes import changed_rig, set_values
 from .ssp.describing import Experiment
 from .ssp.shapes import Version
 from .ssp.tools import takes_systems

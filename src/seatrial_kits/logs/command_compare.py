@@ -7,15 +7,15 @@ from pathlib import Path
 from rich.markup import escape
 
 from seatrial.cli.answer import answer
-from seatrial.cli.reading import reading
 from seatrial.cli.show import console, print_notes, print_table, text_table
 from seatrial.trial.logs.formats import read_log
 from seatrial.trial.logs.quantities import read_columns
-from seatrial.trial.records.run_folder import load_run
+from seatrial.trial.records.run_folder import load_run, read_manifest
 
-from .paired.pairing import pairs, read_matches
+from .paired.pairing import compared_signals, pairs, read_matches
 from .paired.residuals import HEADINGS, resampling_notes, residual_of
 from .paired.steady_clock import steady
+from .reading import reading
 
 
 def compare_with_log(
@@ -23,9 +23,11 @@ def compare_with_log(
 ) -> None:
     """Print what is left between a run's signals and a log's channels. Raises InputError."""
     matches, named = read_matches(match, "--match"), read_columns(columns) if columns else {}
-    run = load_run(folder)
+    described = read_manifest(folder)["signals"].items()
+    numbers = [name for name, each in described if each.get("type") not in ("String", "Binary")]
     with reading(path):
         log = steady(read_log(path, format_name, named.pop("time", None)))
+    run = load_run(folder, compared_signals(numbers, log, matches))
     found, notes = pairs(run, log, matches, named)
     residuals = [residual_of(signal, channel) for signal, channel in found]
     residuals.sort(key=lambda each: 1.0 if each.fit is None else each.fit)

@@ -12,7 +12,6 @@ from rich.markup import escape
 
 from seatrial.cli.answer import answer
 from seatrial.cli.options import LogColumns, LogFormat
-from seatrial.cli.reading import reading
 from seatrial.cli.show import console, print_notes
 from seatrial.cli.statuses import FAILED
 from seatrial.cli.watch import Watch
@@ -30,6 +29,7 @@ from seatrial.trial.running.output import claim_folder
 from .imported import Wanted, imported, write_run
 from .paired.common_time import Window
 from .paired.steady_clock import from_zero, steady
+from .reading import reading
 
 Begin = Annotated[
     str | None, typer.Option("--from", metavar="TIME", help="Begin of the part of the log: '60 s'.")

@@ -14,7 +14,6 @@ from rich.table import Table
 
 from seatrial.cli.answer import answer
 from seatrial.cli.options import LogColumns, LogFormat
-from seatrial.cli.reading import reading
 from seatrial.cli.show import console, print_notes, print_table
 from seatrial.model.readable import number
 from seatrial.trial.logs.channels import Channel
@@ -22,6 +21,7 @@ from seatrial.trial.logs.formats import FORMATS, format_of, read_log
 from seatrial.trial.logs.quantities import defaults, read_columns, series
 
 from .paired.common_time import GAP
+from .reading import reading
 
 _MOST_SHOWN = 40
 """Channels of a log that are all shown."""

@@ -71,17 +71,18 @@ class _Table:
                 wrong[done + int(row)] = cells[row]
 
     def channels(self) -> dict[str, Channel]:
-        """Return the columns as channels, whose time is the number of the row."""
+        """Return the columns as channels, whose times are to be set; the table is empty then."""
         if not self.values:
             return {
                 name: Channel(name, unit, np.empty(0), np.empty(0), np.empty(0, np.int64))
                 for name, unit in zip(self.names, self.units, strict=True)
             }
         lines = np.concatenate(self.lines)
-        rows = np.arange(len(lines), dtype=np.float64)
+        self.lines.clear()
+        untimed = np.zeros(len(lines))
         found = {}
         for place, (name, unit) in enumerate(zip(self.names, self.units, strict=True)):
-            made = channel(name, unit, rows, np.concatenate(self.values[place]), lines)
+            made = channel(name, unit, untimed, np.concatenate(self.values[place]), lines)
             self.values[place] = []
             found[name] = replace(made, wrong=self.wrong[place])
         return found

@@ -14,7 +14,6 @@ from rich.table import Table
 
 from seatrial.cli.answer import answer
 from seatrial.cli.options import LogColumns, LogFormat
-from seatrial.cli.reading import reading
 from seatrial.cli.show import console, print_notes
 from seatrial.errors import InputError, unknown
 from seatrial.model.readable import number, person_scale
@@ -22,6 +21,7 @@ from seatrial.model.units import quantity
 from seatrial.trial.logs.quantities import Column, read_columns
 from seatrial.trial.records.run_folder import MANIFEST, load_run
 from seatrial_kits.logs.paired.common_time import WHOLE, Window
+from seatrial_kits.logs.reading import reading
 
 from .drawing import shown_number
 from .evaluation import FIGURES, Done, approach_speed_of, criteria_name, figures_of

@@ -51,7 +51,7 @@ def ask(
     rerun_changed: RerunChanged = False,
     no_report: NoReport = False,
 ) -> None:
-    """Ask a campaign a question: it runs the trials that the answer needs."""
+    """Run the trials that the answer to a question to a campaign needs, and print the answer."""
     if resume and out is None:
         raise InputError("--resume needs the question's folder, --out FOLDER")
     if network:

@@ -71,6 +71,35 @@ def test_the_same_frame_in_each_text(read, tmp_path, name):
         assert found[0].time is None
 
 
+@pytest.mark.parametrize("name", [*LINES, *TIMELESS])
+def test_a_text_of_windows(read, tmp_path, name):
+    """A byte order mark, and lines that end in CR LF: no frame is lost."""
+    line = {**LINES, **TIMELESS}[name]
+    text = f"\ufeff{line}\r\n{line}\r\n"
+    found, skipped = read(text)
+    assert [each.frame for each in found] == [HEADING, HEADING]
+    assert not skipped
+    assert is_recording(tmp_path / "bus.log", text.encode())
+
+
+@pytest.mark.parametrize("suffix", [".asc", ".trc", ".blf"])
+def test_a_log_of_python_can_that_is_cut(tmp_path, suffix):
+    path = tmp_path / f"bus{suffix}"
+    with can.Logger(str(path)) as writer:
+        for k in range(50_000 if suffix == ".blf" else 500):  # objects of .blf go by 128 KiB
+            writer.on_message_received(message(HEADING, 1.7e9 + k / 100, 0))
+    whole = path.read_bytes()
+    skipped = Counter()
+    count = len(list(recorded_frames(path, skipped)))
+    assert not skipped
+    path.write_bytes(whole[: len(whole) * 6 // 10])
+    found = [each.frame for each in recorded_frames(path, skipped)]
+    assert 0 < len(found) < count
+    assert set(found) == {HEADING}
+    (said,) = skipped
+    assert "cut" in said
+
+
 def test_the_source_in_pcdin(read):
     found, _ = read("$PCDIN,01F112,0000C72A,23,FF103BFF7FCEF5FC*00\n")
     assert found[0].frame.data == HEADING.data

@@ -1,5 +1,7 @@
 """CSV files as people's programs write them."""
 
+import gzip
+
 import pytest
 
 from seatrial.errors import InputError
@@ -83,3 +85,9 @@ def test_bytes_that_are_no_text(tmp_path):
 def test_a_format_that_there_is_not(read):
     with pytest.raises(InputError, match="unknown log format 'cvs'; did you mean 'csv'"):
         read("time,a\n0,1\n", format_name="cvs")
+
+
+def test_a_compressed_log(tmp_path):
+    (tmp_path / "boat.csv.gz").write_bytes(gzip.compress(b"time,a\n0,1\n"))
+    with pytest.raises(InputError, match=r"boat\.csv\.gz: is compressed \(gzip\)"):
+        read_log(tmp_path / "boat.csv.gz")

@@ -6,10 +6,10 @@ import tracemalloc
 
 import pytest
 
-from seatrial.cli.reading import reading
 from seatrial.trial.logs.channels import Samples
 from seatrial.trial.logs.formats import read_log
 from seatrial.trial.logs.reading_progress import told
+from seatrial_kits.logs.reading import reading
 from tests.kit import needs_kits
 from tests.kits.logs import circle
 from tests.kits.logs.test_mutated_logs import TIME, WRITERS

@@ -37,6 +37,9 @@ class Format:
 
 
 FORMATS = Registry("seatrial.log_formats", "log format", {})
+_PACKED = {b"\x1f\x8b": "gzip", b"PK\x03\x04": "zip", b"BZh": "bzip2", b"\xfd7zXZ": "xz",
+           b"\x28\xb5\x2f\xfd": "Zstandard", b"7z\xbc\xaf": "7-Zip"}  # fmt: skip
+"""First bytes of compressed files."""
 _OWN_TIME = "time"
 """What experiments call the time of a log that has times of its own."""
 _LAST = "csv"
@@ -95,5 +98,8 @@ def _found(path: Path, head: bytes) -> str:
     for name in sorted(FORMATS.names(), key=lambda name: name == _LAST):
         if FORMATS.load(name).recognises(path, head):
             return name
+    packed = next((name for magic, name in _PACKED.items() if head.startswith(magic)), None)
+    if packed is not None:
+        raise InputError(f"{path}: is compressed ({packed}); logs are read as they are unpacked")
     titles = ", ".join(f"{name} ({FORMATS.load(name).title})" for name in FORMATS.names())
     raise InputError(f"{path}: its format is not known; --format can name one of {titles}")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import csv
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from itertools import islice
 from pathlib import Path
@@ -82,8 +82,8 @@ def viewed(
             yield name, component, ports
 
 
-def load_run(folder: Path | str) -> Run:
-    """Read a run folder.
+def load_run(folder: Path | str, signals_wanted: Collection[str] | None = None) -> Run:
+    """Read a run folder; of the record, where they are named, some signals alone.
 
     A run that was killed may lack verdicts, timing and its last line; one that failed at its
     start, the whole record, which then is empty, as is one whose file is.
@@ -100,7 +100,7 @@ def load_run(folder: Path | str) -> Run:
     signals: dict[str, Any] = {}
     truncated = False
     if _has_content(folder / SIGNALS):
-        time, signals, truncated = _read_signals(folder / SIGNALS, _texts(manifest))
+        time, signals, truncated = _read_signals(folder / SIGNALS, _texts(manifest), signals_wanted)
         _check_signals(folder / SIGNALS, time, signals, manifest)
     elif is_whole(manifest["status"]) or manifest["status"] in ("ended", "stopped"):
         raise InputError(f"{folder} has no {SIGNALS}")
@@ -199,8 +199,10 @@ def _checked(path: Path, schema: str) -> Any:
     return run_schema.checked_json(path, getattr(run_schema, schema))
 
 
-def _read_signals(path: Path, texts: set[str]) -> tuple[FloatArray, dict[str, Any], bool]:
-    """Return times, columns by name, and whether the last line was cut.
+def _read_signals(
+    path: Path, texts: set[str], wanted: Collection[str] | None
+) -> tuple[FloatArray, dict[str, Any], bool]:
+    """Return times, the columns that are wanted by name, and whether the last line was cut.
 
     A column is numbers if every cell is one, unless it is one of ``texts``.
     """
@@ -213,13 +215,15 @@ def _read_signals(path: Path, texts: set[str]) -> tuple[FloatArray, dict[str, An
 
     rows = _Rows(path, len(header))
     chunks: list[list[FloatArray]] = [[np.empty(0)] for _ in header]
-    text: dict[int, list[str]] = {i: [] for i, name in enumerate(header) if name in texts}
+    kept = [i for i, name in enumerate(header) if i == 0 or wanted is None or name in wanted]
+    text: dict[int, list[str]] = {i: [] for i in kept if header[i] in texts}
     iterator = iter(rows)
     while chunk := list(islice(iterator, _CHUNK_ROWS)):
-        for index, cells in enumerate(zip(*chunk, strict=True)):
+        columns_read = list(zip(*chunk, strict=True))
+        for index in kept:
             if index not in text:
                 try:
-                    chunks[index].append(np.array(cells, dtype=float))
+                    chunks[index].append(np.array(columns_read[index], dtype=float))
                 except ValueError:
                     text[index] = []
     if 0 in text:
@@ -229,8 +233,8 @@ def _read_signals(path: Path, texts: set[str]) -> tuple[FloatArray, dict[str, An
             for index, column in text.items():
                 column.append(row[index])
     columns: dict[str, Any] = {}
-    for index, name in enumerate(header):
-        columns[name] = text[index] if index in text else np.concatenate(chunks[index])
+    for index in kept:
+        columns[header[index]] = text[index] if index in text else np.concatenate(chunks[index])
         chunks[index].clear()  # a long record is in memory once
     return columns.pop("time"), columns, rows.cut
 

@@ -11,11 +11,11 @@ import typer
 from rich.markup import escape
 
 from seatrial.cli.answer import answer
-from seatrial.cli.reading import reading
 from seatrial.cli.show import console, print_notes, print_table, text_table
 from seatrial.errors import InputError, unknown
 from seatrial.trial.reports.report import REPORT
 from seatrial.trial.running.output import claim_folder
+from seatrial_kits.logs.reading import reading
 from seatrial_kits.sea_trials.log_record import MOTION
 
 from .craft import Craft

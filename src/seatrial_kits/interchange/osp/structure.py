@@ -13,9 +13,9 @@ from lxml import etree
 from seatrial.errors import InputError, unknown
 from seatrial.fmi.files.xmlfile import read_xml
 from seatrial.fmi.instance import Value
-from seatrial.sim.proxied import proxied_file
 from seatrial.system.rig import LONGEST_S
 
+from ..proxied import proxied_file
 from ..ssp.documents import boolean, child, children, needed, number, tag, where
 
 NAMESPACE = "http://opensimulationplatform.com/MSMI/OSPSystemStructure"

@@ -10,9 +10,9 @@ from urllib.parse import unquote, urlsplit
 from seatrial.errors import InputError
 from seatrial.fmi.files.archive import unpacked
 from seatrial.fmi.loading.load import load_fmu
-from seatrial.sim.proxied import proxied_file
 from seatrial.system.packages import SSP_FILE
 
+from ..proxied import proxied_file
 from .documents import needed, where
 from .model import FMU, PACKAGE, Source
 from .notes import Notes

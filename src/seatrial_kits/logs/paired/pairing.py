@@ -45,6 +45,13 @@ def read_matches(texts: Sequence[str], option: str) -> list[Match]:
     return found
 
 
+def compared_signals(names: Sequence[str], log: Log, matches: Sequence[Match]) -> set[str] | None:
+    """Return the signals that `pairs` looks at, of the ``names`` of a run's; None for all."""
+    wanted = {each.signal for each in matches} or {name for name in names if name in log.channels}
+    wanted = wanted or {name for found in motion_signals(names).values() for name in found}
+    return wanted if wanted <= {*names} else None  # near misses are looked for among all
+
+
 def pairs(
     run: Run, log: Log, matches: Sequence[Match], columns: Mapping[str, Column]
 ) -> tuple[list[tuple[Trace, Trace]], list[str]]:

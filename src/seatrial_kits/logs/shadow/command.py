@@ -23,7 +23,6 @@ from seatrial.cli.options import (
     changes_of,
     engine_named,
 )
-from seatrial.cli.reading import reading
 from seatrial.cli.show import (
     console,
     print_notes,
@@ -49,6 +48,7 @@ from ..command_import import Begin, Checks, End, window_of
 from ..paired.pairing import read_matches
 from ..paired.residuals import HEADINGS, resampling_notes
 from ..paired.steady_clock import from_zero, steady
+from ..reading import reading
 from .asked import Asked, read_feeds
 from .page import compared, describe, write_data, write_page
 from .preparing import Driven, Prepared, prepared

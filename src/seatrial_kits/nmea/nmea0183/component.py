@@ -12,9 +12,7 @@ from seatrial.errors import InputError
 from seatrial.links.endpoints.endpoint import Channel, Endpoint, report
 from seatrial.links.endpoints.url import open_endpoints, other_end
 from seatrial.links.geodesy import Origin
-from seatrial.links.leg import LegStatus, leg_status
 from seatrial.links.parameter_validation import start_us
-from seatrial.links.satellites import sky
 from seatrial.links.text import Inbox, Outbox
 from seatrial.links.unconnected import is_connected
 from seatrial.model.component import NS
@@ -22,11 +20,13 @@ from seatrial.model.sampled import Sampled
 
 from ..ais.codec import Assembly
 from ..ais.reports import report as ais_report
+from ..leg import LegStatus, leg_status
 from ..received.directions import Variation
 from ..received.memory import Received, count, preferred_sources
 from ..received.outputs import QUANTITIES
 from ..received.publishing import Publisher, position
 from ..received.targets import Targets
+from ..satellites import sky
 from .codec import decode, encode
 from .orders import Order, heading_ordered, last_reported, read_order
 from .ports import Nmea0183Ports

@@ -27,6 +27,8 @@ _TAG_TIME = re.compile(r"\\(?:[^\\*]*,)?c:(\d+)")
 """UNIX time of a TAG block (NMEA 0183 4.0, section 7)."""
 _MILLISECONDS = 1e11
 """A UNIX time above is in ms."""
+_BYTE_ORDER_MARK = "\xef\xbb\xbf"
+"""At the beginning of a text in UTF-8 that Windows has written, as Latin-1."""
 _PLACES = {"RMC": 1, "GGA": 1, "GNS": 1, "ZDA": 1, "GLL": 5}
 """Field with the time of day, by formatter."""
 _OF_DAY = re.compile(r"(\d\d)(\d\d)(\d\d(?:\.\d*)?)")
@@ -34,6 +36,7 @@ _OF_DAY = re.compile(r"(\d\d)(\d\d)(\d\d(?:\.\d*)?)")
 
 def stamp(prefix: str) -> float | None:
     """Return the time before a sentence: s since 1970, or since midnight; None if there is none."""
+    prefix = prefix.removeprefix(_BYTE_ORDER_MARK)
     tag = _TAG_TIME.search(prefix)
     text = tag[1] if tag else prefix.strip(" \t,;:|[]()<>")
     if not text:

@@ -12,9 +12,9 @@ import numpy as np
 
 from seatrial.errors import InputError
 from seatrial.links.clock_jumps import usual_step
-from seatrial.links.player import Player, Recording
 from seatrial.links.text import Outbox
 from seatrial.model.component import Output, Parameter, terminal
+from seatrial_kits.can.playing import Player, Recording
 
 from .log_fields import SENTENCE
 from .log_reader import past_midnight, stamp, time_of_day

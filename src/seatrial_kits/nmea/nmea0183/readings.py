@@ -6,8 +6,8 @@ import datetime
 import math
 from dataclasses import dataclass
 
-from seatrial.links.leg import LegStatus
-from seatrial.links.satellites import Sky
+from ..leg import LegStatus
+from ..satellites import Sky
 
 Pair = tuple[float, float]
 

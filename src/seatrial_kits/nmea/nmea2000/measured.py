@@ -6,11 +6,11 @@ import math
 from collections.abc import Sequence
 
 from seatrial.links.geodesy import Origin
-from seatrial.links.leg import LegStatus, leg_status
-from seatrial.links.satellites import Sky, sky
 from seatrial.links.unconnected import NOT_CONNECTED
 from seatrial.model.component import NS, seconds
 
+from ..leg import LegStatus, leg_status
+from ..satellites import Sky, sky
 from .codec import Fields
 from .ports import Nmea2000Ports
 

@@ -122,3 +122,10 @@ def test_two_receivers_are_distinguished(read):
 def test_logs_that_tell_nothing(write, lines, message):
     with pytest.raises(InputError, match=message):
         read_log(write("boat.nmea", "\n".join(lines)), "nmea0183")
+
+
+def test_times_before_the_lines_of_a_text_of_windows(read):
+    """A byte order mark before the first time does not take the times from all lines."""
+    found = read(*(f"{mark}{t} {sentence('HEHDT,100.0,T')}" for mark, t in
+                   (("\ufeff", 1714564800.25), ("", 1714564800.5), ("", 1714564801.0))))  # fmt: skip
+    np.testing.assert_allclose(found.channels["HDT.headingT"].time, [0.0, 0.25, 0.75])

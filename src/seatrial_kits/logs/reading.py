@@ -6,8 +6,8 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from ..trial.logs.reading_progress import told
-from .watch import Watch
+from seatrial.cli.watch import Watch
+from seatrial.trial.logs.reading_progress import told
 
 
 @contextmanager

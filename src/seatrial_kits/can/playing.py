@@ -11,9 +11,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import InputError
-from ..model.component import NS, Component, Output, Parameter
-from .clock_jumps import Array, clock_jumps, usual_step
+from seatrial.errors import InputError
+from seatrial.links.clock_jumps import Array, clock_jumps, usual_step
+from seatrial.model.component import NS, Component, Output, Parameter
 
 
 @dataclass

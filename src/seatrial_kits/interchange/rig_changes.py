@@ -6,12 +6,12 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from ...errors import InputError, unknown
-from ...system.flattening import load_rig
-from ...system.paths import split_path
-from ...system.rig import Rig
-from ...system.system import System
-from .fault_keys import choices_in
+from seatrial.errors import InputError, unknown
+from seatrial.system.flattening import load_rig
+from seatrial.system.paths import split_path
+from seatrial.system.rig import Rig
+from seatrial.system.system import System
+from seatrial.trial.files.fault_keys import choices_in
 
 _OF_RIG = ("step", "algorithm")
 

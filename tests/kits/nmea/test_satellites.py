@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from seatrial.links.satellites import sky
+from seatrial_kits.nmea.satellites import sky
 
 PLACES = [(latitude, longitude) for latitude in (-60, -23, 0, 45, 85) for longitude in (-43, 120)]
 DAY = [1_772_323_200 + 1200 * k for k in range(72)]
