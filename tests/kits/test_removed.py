@@ -12,8 +12,9 @@ import pytest
 from .without import KITS, ROOT, without
 
 pytestmark = pytest.mark.long
-WHOLE = ("tests/interop", "tests/test_docs.py", "tests/test_readme.py", "tests/test_wheel.py")
-"""Tests of the whole: other people's tools, pages, packages."""
+WHOLE = ("tests/interop", "tests/test_bibliography.py", "tests/test_docs.py")
+WHOLE += ("tests/test_readme.py", "tests/test_wheel.py")
+"""Tests of the whole: other people's tools, what all cite, pages, packages."""
 
 
 NOTICING = ("tests/api", "tests/cli", "tests/cosim", "tests/kits/test_kits.py", "tests/links")
