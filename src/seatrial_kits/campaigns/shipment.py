@@ -79,8 +79,7 @@ _folders: list[tempfile.TemporaryDirectory[str]] = []
 def _unpacked(_sha256: str, data: bytes) -> tuple[Campaign, Path]:
     _folders.append(tempfile.TemporaryDirectory(prefix="seatrial-campaign-"))
     folder = Path(_folders[-1].name)
-    with tarfile.open(fileobj=io.BytesIO(data)) as archive:
-        archive.extractall(folder, filter="data")
+    unpack_folder(data, folder)
     packer, name, place, changes, limit = (folder / "campaign").read_text("utf-8").split("\n")
     _refuse_other(json.loads(packer))
     top = folder / "files"
@@ -102,19 +101,27 @@ def _refuse_other(packer: dict[str, str]) -> None:
 def pack_folder(folder: Path) -> bytes:
     """Return a run folder as a tar archive."""
     stream = io.BytesIO()
-    with tarfile.open(fileobj=stream, mode="w:gz") as archive:
+    with tarfile.open(fileobj=stream, mode="w:gz", dereference=True) as archive:
         archive.add(folder, folder.name)
     return stream.getvalue()
 
 
 def unpack_folder(data: bytes, below: Path) -> None:
-    """Put a packed run folder ``below``, with the permissions of files made here."""
+    """Put an archive's files and folders ``below``, with the permissions of files made here.
 
-    def member(one: tarfile.TarInfo, path: str) -> tarfile.TarInfo:
-        return tarfile.data_filter(one, path).replace(mode=None)  # type: ignore[arg-type]
-
+    Raises InputError for a member that is neither, or leads elsewhere. (`tarfile` has filters for
+    members since Python 3.11.4 only.)
+    """
     with tarfile.open(fileobj=io.BytesIO(data)) as archive:
-        archive.extractall(below, filter=member)
+        for one in archive:
+            inside = PurePosixPath(one.name)
+            content = archive.extractfile(one) if one.isfile() else None
+            if inside.is_absolute() or ".." in inside.parts or not (content or one.isdir()):
+                raise InputError(f"an archive has {one.name!r}, and not files and folders alone")
+            place = below / inside
+            (place.parent if content else place).mkdir(parents=True, exist_ok=True)
+            if content:
+                place.write_bytes(content.read())
 
 
 def _top(campaign: Campaign) -> Path | None:

@@ -1,12 +1,21 @@
 """Travel of a campaign to a cluster's workers: all that it needs, wherever its files say it is."""
 
+import io
+import tarfile
+
 import pytest
 
 from seatrial.errors import InputError
 from seatrial.system.parameters import load_vehicle
 from seatrial_kits.campaigns.campaign import load_campaign
 from seatrial_kits.campaigns.evaluator import Evaluator, Plan
-from seatrial_kits.campaigns.shipment import needed_files, packed, unpacked
+from seatrial_kits.campaigns.shipment import (
+    needed_files,
+    pack_folder,
+    packed,
+    unpack_folder,
+    unpacked,
+)
 
 COMPONENT = """
 from seatrial.model.component import Component, Output, Parameter
@@ -109,3 +118,28 @@ def test_a_project_too_large_to_travel_is_refused(write, monkeypatch):
     monkeypatch.setattr("seatrial_kits.campaigns.shipment.MOST_BYTES", 10_000)
     with pytest.raises(InputError, match="put it and what it needs in a folder apart"):
         packed(load_campaign("c.toml"))
+
+
+def test_a_run_folder_arrives_whole(write, tmp_path):
+    write("case/inside/empty", "")
+    folder = write("case/verdicts.json", "{}").parent
+    (folder / "none").mkdir()
+    unpack_folder(pack_folder(folder), tmp_path / "there")
+    found = {p.relative_to(tmp_path / "there").as_posix() for p in (tmp_path / "there").rglob("*")}
+    there = {"case", "case/none", "case/inside", "case/inside/empty", "case/verdicts.json"}
+    assert found == there
+    assert (tmp_path / "there/case/verdicts.json").read_text() == "{}"
+
+
+@pytest.mark.parametrize(
+    ("name", "kind"),
+    [("../out", tarfile.REGTYPE), ("/out", tarfile.REGTYPE), ("out", tarfile.SYMTYPE)],
+)
+def test_an_archive_leads_nowhere_else(tmp_path, name, kind):
+    stream, member = io.BytesIO(), tarfile.TarInfo(name)
+    member.type, member.linkname = kind, "/"
+    with tarfile.open(fileobj=stream, mode="w") as archive:
+        archive.addfile(member, io.BytesIO())
+    with pytest.raises(InputError, match=f"'{name}', and not files and folders alone"):
+        unpack_folder(stream.getvalue(), tmp_path / "below")
+    assert list(tmp_path.iterdir()) == []
