@@ -4,9 +4,7 @@ from __future__ import annotations
 
 import csv
 import json
-import os
 import re
-import shutil
 import struct
 import subprocess
 from pathlib import Path
@@ -19,6 +17,7 @@ from seatrial.fmi.loading import sandbox
 from seatrial.trial.files.trial import load_trial
 from seatrial.trial.running.run import run_trial
 
+from ..bwrap import needs_bwrap
 from ..command import seatrial
 
 CURIOUS = '''
@@ -90,12 +89,6 @@ def ran(isolated: str, port: int, write, tmp_path: Path) -> list[dict[str, str]]
     assert result.status == "complete", result.error
     with (out / "signals.csv").open(newline="") as file:
         return list(csv.DictReader(file))
-
-
-needs_bwrap = pytest.mark.skipif(
-    shutil.which("bwrap") is None and not os.environ.get("SEATRIAL_NEED_TOOLCHAIN"),
-    reason="no bubblewrap here",
-)
 
 
 @pytest.mark.slow

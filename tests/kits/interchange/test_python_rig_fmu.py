@@ -18,10 +18,11 @@ from seatrial.system.flattening import load_rig
 from seatrial_kits.interchange.rig_fmu.face import face_of
 from seatrial_kits.interchange.rig_fmu.frozen import rig_source
 from seatrial_kits.interchange.rig_fmu.python import build_python_rig
+from tests.bwrap import needs_bwrap
 from tests.command import seatrial
 from tests.interop.running import free_port
 from tests.kits.interchange.test_rig_fmu import RIG, TEXT, bits
-from tests.kits.native.test_standalone import RESOURCES, image_of, needs_bwrap
+from tests.kits.native.test_standalone import RESOURCES, image_of
 
 
 @pytest.fixture(scope="module")

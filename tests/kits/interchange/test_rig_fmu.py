@@ -24,9 +24,10 @@ from seatrial.system.assembling.assembly import assemble
 from seatrial.system.flattening import load_rig
 from seatrial_kits.interchange.rig_fmu.native import build_native_rig, why_not_native
 from seatrial_kits.native.engine import carry_natively
+from tests.bwrap import needs_bwrap
 from tests.command import seatrial as command
 from tests.fmi.native_slave import Slave
-from tests.kits.native.test_standalone import RESOURCES, image_of, needs_bwrap
+from tests.kits.native.test_standalone import RESOURCES, image_of
 
 pytestmark = pytest.mark.skipif(HERE != "linux64", reason="loads libraries of Linux")
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import ctypes
-import shutil
 import subprocess
 from pathlib import Path
 
@@ -17,12 +16,12 @@ from seatrial.fmi.components.source import ComponentSource, find_source
 from seatrial_kits.native.standalone.distribution import distributions, files_of
 from seatrial_kits.native.standalone.export import build_standalone_fmu
 from seatrial_kits.native.standalone.shared_objects import least_glibc
+from tests.bwrap import needs_bwrap
 from tests.command import seatrial
 from tests.interop.running import free_port
 
 HOST = Path(__file__).parents[2] / "fmi" / "slaves" / "paced_host.c"
 HEADERS = Path(fmpy.__file__).parent / "c-code"
-needs_bwrap = pytest.mark.skipif(shutil.which("bwrap") is None, reason="bubblewrap is missing")
 
 
 def built(name: str, folder: Path) -> Path:
