@@ -169,13 +169,13 @@ def test_a_project_of_platformio_runs_as_it_is(tmp_path, board, mcu):
 
 def test_check_knows_the_board_of_arduino_cli_and_all_that_is_missing(tmp_path):
     need("host for ESP32")
-    source = "#include <BluetoothSerial.h>\n#include <esp_event.h>\n#include <Absent.h>\nvoid setup() {}\nvoid loop() {}\n"
+    source = "#include <BLEDevice.h>\n#include <esp_event.h>\n#include <Absent.h>\nvoid setup() {}\nvoid loop() {}\n"
     sketch = write_sketch(tmp_path, source, sketch_dot_yaml="default_fqbn: esp32:esp32:esp32\n")
     done = seatrial("sketch", "check", str(sketch), cwd=tmp_path)
     assert done.returncode == 2
     assert "one on the ESP32 (esp32)" in done.stdout
     assert (
-        "one.ino:1: <BluetoothSerial.h>: the back end 'host' of this board has not Bluetooth"
+        "one.ino:1: <BLEDevice.h>: the back end 'host' of this board has not Bluetooth LE"
         in done.stderr
     )
     assert (

@@ -19,14 +19,16 @@ pytestmark = pytest.mark.interop
 HEADING = "vehicle.boat.eta.psi"
 
 
-def mega(name: str) -> str:
+def board(name: str) -> str:
     """Return the board's component."""
-    return "autopilot.main.mega" if name.startswith("gloria") else "autopilot.mega"
+    if name.startswith("gloria"):
+        return "autopilot.main.mega"
+    return "autopilot.esp32" if name.endswith("esp32") else "autopilot.mega"
 
 
 def sailed(name: str, folder: Path, backend: str = "host", **changes: object):
     need(backend)
-    trial = load_trial(name).changed({f"{mega(name)}.backend": backend, **changes}, "test")
+    trial = load_trial(name).changed({f"{board(name)}.backend": backend, **changes}, "test")
     result = run_trial(trial, folder, engine="direct")
     assert result.status == "complete", result.error
     return result
@@ -54,7 +56,7 @@ def test_both_back_ends_steer_alike(tmp_path):
         sailed("gloria-sketch", tmp_path / each, each, stop="4 s") for each in ("host", "simavr")
     )
     assert apart(host, simavr) < 1.0
-    pulses = [f"{mega('gloria')}.pulse.s{n}" for n in (1, 3)]
+    pulses = [f"{board('gloria')}.pulse.s{n}" for n in (1, 3)]
     ends = [[float(rows(each)[-1][pulse]) for pulse in pulses] for each in (host, simavr)]
     assert ends[1] == pytest.approx(ends[0], abs=15e-6)
 
@@ -106,7 +108,7 @@ def test_a_run_lists_links_that_there_are(tmp_path):
 
 def test_the_station_keeper_drives(tmp_path):
     result = sailed("hydrone-sketch", tmp_path / "run", stop="3 s")
-    pulse = f"{mega('hydrone-sketch')}.pulse.s1"
+    pulse = f"{board('hydrone-sketch')}.pulse.s1"
     assert rows(result)[-1][pulse] != rows(result)[0][pulse]
 
 
