@@ -34,11 +34,12 @@ def needing(kit: str) -> list[str]:
 
 
 def passes(python: str, folder: Path, *tests: str) -> None:
-    ignored = [f"--ignore={path}" for path in WHOLE]
-    command = [python, "-m", "pytest", "-n", "auto", "-m", "not slow and not interop and not long"]
-    done = subprocess.run(
-        [*command, *ignored, "--tb=line", *tests], cwd=folder, capture_output=True, text=True
-    )
+    command = [python, "-m", "pytest", "-n", "auto", "--tb=line", *tests]
+    command += [f"--ignore={path}" for path in WHOLE]
+    for chosen in ("not slow and not interop and not long", "not interop and not long"):
+        done = subprocess.run([*command, "-m", chosen], cwd=folder, capture_output=True, text=True)
+        if done.returncode != pytest.ExitCode.NO_TESTS_COLLECTED:  # some kits' tests are all slow
+            break
     assert done.returncode == 0, done.stdout[-5000:]
 
 
