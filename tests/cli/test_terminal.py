@@ -68,7 +68,7 @@ def test_titles_in_listings(tmp_path: Path) -> None:
     assert_harmless(seatrial("list", cwd=tmp_path))
 
 
-@needs_kits("mavlink", "nmea", "ships")
+@needs_kits("ardupilot", "mavlink", "nmea", "ships")
 def test_a_profile_of_others(tmp_path: Path) -> None:
     text = (PROFILES / "mariner.toml").read_text("utf-8")
     text = text.replace("../../../ships/", "../harness/ships/")
