@@ -119,7 +119,7 @@ def test_a_criterion_that_fails_is_status_one(tmp_path: Path) -> None:
             ["convergence", "hydrone-landing", "--halvings", "1"],
             "at least 2 are needed to see an order",
         ),
-        (["run", "otter", "--vehicle", "bluerov2"], "--vehicle names another one, 'bluerov2'"),
+        (["run", "otter", "--vehicle", "bluerov2"], "another one is chosen, 'bluerov2'"),
         (["report", "nowhere"], "nowhere"),
         pytest.param(["compare", "nowhere", "neither"], "nowhere", marks=needs_kits("logs")),
         (["fmu", "build", "trhuster"], "did you mean 'thruster'"),

@@ -315,10 +315,14 @@ def test_nrf24_between_two_boards(tmp_path, backend, answers):
                 other.one.set("rx.uart3", one.one.get("tx.uart3"))
         assert hand.sent[3].startswith(b"00001")
         said = hand.sent[0].decode().split()
-        heard = [tuple(map(int, line.split())) for line in boat.sent[0].decode().splitlines()[:-1]]
-    assert len(heard) > 10
-    assert [throttle for throttle, _ in heard] == list(range(heard[0][0], heard[0][0] + len(heard)))
-    assert {rudder for _, rudder in heard} == {-20}
+        received = [
+            tuple(map(int, line.split())) for line in boat.sent[0].decode().splitlines()[:-1]
+        ]
+    assert len(received) > 10
+    assert [throttle for throttle, _ in received] == list(
+        range(received[0][0], received[0][0] + len(received))
+    )
+    assert {rudder for _, rudder in received} == {-20}
     assert set(said[:-1]) <= ({"1", "1740"} if answers else {"1"})
     assert said.count("1740") > 8 or not answers
     with Bench(tmp_path / "hand", backend, **values) as alone:

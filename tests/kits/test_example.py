@@ -69,6 +69,6 @@ def test_its_command_is_listed_and_agrees_with_the_equation(site: Path, tmp_path
 
 
 def test_doctor_and_lists_name_it(site: Path, tmp_path: Path) -> None:
-    assert "search, skeg, videoray" in seatrial(site, tmp_path, "doctor").stdout
+    assert "ships, skeg, survey" in seatrial(site, tmp_path, "doctor").stdout
     assert "Heel and trim" in seatrial(site, tmp_path, "fmu", "list").stdout
     assert "skiff-straight" in seatrial(site, tmp_path, "list").stdout

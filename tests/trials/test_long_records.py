@@ -1,6 +1,7 @@
 """Records of which not every row, or not every signal, is looked at."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -54,6 +55,11 @@ def test_a_thinned_record_has_the_extremes_and_the_ends(run):
 
 def test_a_short_record_stays(run):
     assert thinned(run, 1000) is run
+
+
+def test_a_record_of_the_time_alone_stays(run):
+    alone = replace(run, signals={})
+    assert thinned(alone, 82) is alone
 
 
 def test_signals_that_are_not_wanted_are_not_read(run):

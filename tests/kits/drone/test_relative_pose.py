@@ -19,7 +19,7 @@ def started(component, **values):
     return component
 
 
-def seen(steps=1, **values):
+def received(steps=1, **values):
     camera = started(RelativePose("camera"), delay=0.0, **values)
     found = []
     for _ in range(steps):
@@ -29,7 +29,7 @@ def seen(steps=1, **values):
 
 
 def test_an_exact_camera_gives_the_pad_from_the_drone():
-    [(valid, offset)] = seen(
+    [(valid, offset)] = received(
         position=[1.0, 2.0, -4.0],
         attitude=[0.1, -0.2, 1.0],
         deck_position=[1.5, 2.2, 0.0],
@@ -44,20 +44,20 @@ def test_an_exact_camera_gives_the_pad_from_the_drone():
 def test_it_sees_within_its_cone_and_the_size_of_the_marks(height):
     edge = (height - 0.2 - 0.1) * math.tan(math.radians(40)) + 0.15
     for aside, expected in ((edge - 1e-3, True), (edge + 1e-3, False)):
-        [(valid, _)] = seen(position=[aside, 0.0, -height], **EXACT)
+        [(valid, _)] = received(position=[aside, 0.0, -height], **EXACT)
         assert valid == expected
 
 
 def test_it_does_not_see_far_nor_what_is_behind_it():
-    assert not seen(position=[0, 0, -12.3], **EXACT)[0][0]
-    assert not seen(position=[0, 0, -0.3], **EXACT)[0][0]
-    assert not seen(position=[0, 0, -3.0], attitude=[math.pi, 0, 0], **EXACT)[0][0]
+    assert not received(position=[0, 0, -12.3], **EXACT)[0][0]
+    assert not received(position=[0, 0, -0.3], **EXACT)[0][0]
+    assert not received(position=[0, 0, -3.0], attitude=[math.pi, 0, 0], **EXACT)[0][0]
 
 
 def test_noise_grows_with_distance_and_with_turning():
     values = {"attitude_error": 0.0, "lost_time": 0.0, "position": [0, 0, -4.2]}
     for extra, sigma in (({}, 0.03), ({"exposure": 0.01, "rates": [1.0, 0, 0]}, 0.07)):
-        offsets = np.array([offset for _, offset in seen(2000, **values, **extra)])
+        offsets = np.array([offset for _, offset in received(2000, **values, **extra)])
         assert offsets.std(axis=0) == pytest.approx([sigma] * 3, rel=0.08)
 
 
@@ -65,7 +65,7 @@ def test_the_attitudes_error_is_constant_in_a_run_and_turns_the_line_of_sight():
     values = {**EXACT, "attitude_error": math.radians(0.5), "position": [0, 0, -10.2]}
     places = []
     for seed in range(300):
-        run = [offset for _, offset in seen(3, seed=seed, **values)]
+        run = [offset for _, offset in received(3, seed=seed, **values)]
         assert run[0] == run[1] == run[2]
         places.append(run[0][:2])
     assert np.std(places, axis=0) == pytest.approx([10.0 * math.radians(0.5)] * 2, rel=0.12)
@@ -74,7 +74,7 @@ def test_the_attitudes_error_is_constant_in_a_run_and_turns_the_line_of_sight():
 @pytest.mark.slow
 def test_dropouts_are_a_chain_of_two_states():
     values = {**EXACT, "lost_time": 0.25, "seen_time": 5.0, "position": [0, 0, -3.0]}
-    valid = np.array([valid for valid, _ in seen(12_000, **values)], dtype=int)
+    valid = np.array([valid for valid, _ in received(12_000, **values)], dtype=int)
     assert 1 - valid.mean() == pytest.approx(0.25 / 5.25, rel=0.25)
     begins = int((np.diff(valid) < 0).sum())
     assert (1 - valid).sum() * 0.05 / begins == pytest.approx(0.05 / -math.expm1(-0.2), rel=0.25)
@@ -109,13 +109,13 @@ def test_the_report_has_the_pads_velocity():
 def test_errors_and_losses_of_the_report():
     radio = started(DeckReport("radio"), delay=0.0)
     names = ("deck_attitude", "deck_rates", "pad_velocity")
-    found, heard = [], 0
+    found, received = [], 0
     for _ in range(10_000):
         if radio.get("valid"):
-            heard += 1
+            received += 1
             found.append([*radio.get(names[0]), *radio.get(names[1]), *radio.get(names[2])])
         radio.advance(radio.now, 0.05)
     expected = [math.radians(0.3)] * 3 + [math.radians(0.2)] * 3 + [0.02] * 3
     assert np.std(found, axis=0) == pytest.approx(expected, rel=0.04)
     # 3.9 standard deviations of a share of 10 000 messages.
-    assert 1 - heard / 10_000 == pytest.approx(0.02, abs=3.9 * math.sqrt(0.02 * 0.98 / 10_000))
+    assert 1 - received / 10_000 == pytest.approx(0.02, abs=3.9 * math.sqrt(0.02 * 0.98 / 10_000))

@@ -93,3 +93,5 @@ def test_angles_go_on_over_their_jumps():
         unwrapped(np.array([350.0, 10.0, 30.0]), "deg"), [350.0, 370.0, 390.0]
     )
     assert unwrapped(np.array([350.0, 10.0]), "m").tolist() == [350.0, 10.0]
+    angles = np.random.default_rng(3).uniform(-4.0, 4.0, 5000)
+    np.testing.assert_allclose(unwrapped(angles, "rad"), np.unwrap(angles), rtol=0, atol=1e-9)

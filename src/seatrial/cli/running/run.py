@@ -252,7 +252,7 @@ def with_vehicle(name: str, changes: dict[str, Any]) -> tuple[str, dict[str, Any
     here = place_in(Path.cwd() / FOLDERS, "harness/rigs", f"vehicles/{name}")
     if here is not None or name in _vehicles():
         if (other := changes.get(_VEHICLE, name)) != name:
-            raise InputError(f"{name!r} is a vehicle, and --vehicle names another one, {other!r}")
+            raise InputError(f"{name!r} is a vehicle, and another one is chosen, {other!r}")
         trial = _trial_under(str(changes.get(_AUTOPILOT, "")))
         return trial, {_VEHICLE: name, **changes}
     if name in available("harness/rigs"):

@@ -23,7 +23,8 @@ def thinned(run: Run, most: int = MOST_ROWS) -> Run:
     is: each change of a text counts.
     """
     count = len(run.time)
-    if count <= most or any(isinstance(run.signals[name], list) for name in run.signals):
+    has_text = any(isinstance(run.signals[name], list) for name in run.signals)
+    if count <= most or not run.signals or has_text:
         return run
     edges = np.linspace(0, count, max((most - 2) // (2 * len(run.signals)), 1) + 1).astype(int)
     # Signals one by one: those of a long log are not in memory together.

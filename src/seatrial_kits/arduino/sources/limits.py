@@ -24,6 +24,8 @@ LIMITS = {
         "memory and the stacks of tasks are not the board's: too large a sketch goes unnoticed",
         "the ADC is linear up to its full scale",
         "random numbers are the same in each run",
+        "TLS (https, WiFiClientSecure.h) connects to nobody; nobody asks for a name by mDNS, and "
+        "no update of the program arrives",
     ),
 }
 """As `seatrial sketch check` prints it."""

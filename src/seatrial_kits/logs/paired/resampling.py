@@ -125,7 +125,7 @@ def unwrapped(values: Array, said: str) -> Array:
     turn = turn_of(said)
     if turn is None or len(values) < 2:
         return values
-    turns = np.diff(values)
+    turns = np.diff(values)  # in place: np.unwrap takes five times the memory of the values
     turns /= turn
     np.rint(turns, out=turns)
     if not turns.any():
