@@ -14,6 +14,7 @@ from .dds.participant import Durability, Participant, Writer
 from .description import urdf
 from .ports import Ros2Ports
 from .published import BASE, MEASURED, Fields, Here, leg, measured, odometry, places, transforms
+from .surroundings import Traffic
 from .topics import LATCHED, PUBLISHED, Names
 
 _OVERDUE = 1.5
@@ -34,6 +35,7 @@ class Outlet:
         self._writers: dict[str, Writer | None] = {}
         self._last: dict[str, tuple[Fields, int]] = {}
         self._truth_ns, self._leg = -(10**18), 0
+        self._traffic = Traffic()
         self._measured: dict[str, Callable[[list[Any]], Any]] = {}
         """By key, what takes the inputs of a topic out of all values of the link."""
         self._inputs: dict[str, Any] = {}
@@ -104,6 +106,7 @@ class Outlet:
             fields = MEASURED[key].make(link, here)
             if fields is not None and self._is_new(key, fields, here):
                 yield key, fields
+        yield from self._traffic.messages(link.ais, here)
         if now - self._truth_ns >= round(link.truth_period * NS):
             self._truth_ns = now
             yield "tf", transforms(link, here)

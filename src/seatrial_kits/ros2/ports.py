@@ -177,6 +177,7 @@ class Ros2Ports(Logging, Reachable, TrueMotion, Sampled):
     leg_from = Input("m", "where the leg begins", axes=_NED, optional=True)
     leg_to = Input("m", "where the leg ends", axes=_NED, optional=True)
     leg_radius = Input("m", "distance at which its end is reached", optional=True)
+    ais = Input("1", "VDM and VDO sentences, as text", type=str, role="bytes", optional=True)
     piloted_pulse = Input(
         "s", "pulses of the vehicle's pilot", axes=CHANNELS, start=NOT_CONNECTED, optional=True
     )

@@ -43,6 +43,8 @@ PUBLISHED: Mapping[str, Topic] = {
     "joints": Topic("joint_states", "sensor_msgs/msg/JointState"),
     "description": Topic("robot_description", "std_msgs/msg/String"),
     "leg": Topic("leg", "nav_msgs/msg/Path"),
+    "nmea": Topic("nmea", "nmea_msgs/msg/Sentence"),
+    "ais_targets": Topic("ais_targets", "geometry_msgs/msg/PoseArray"),
     "diagnostics": Topic("/diagnostics", "diagnostic_msgs/msg/DiagnosticArray"),
 }
 """Topics that the link writes."""

@@ -3,6 +3,7 @@ action three.
 
 simulation_interfaces 1.x (Apache-2.0, https://github.com/ros-simulation/simulation_interfaces),
 marine_acoustic_msgs (BSD-3-Clause, https://github.com/apl-ocean-engineering/marine_msgs),
+nmea_msgs (BSD-3-Clause, https://github.com/ros-drivers/nmea_msgs),
 ros_gz_interfaces (Apache-2.0, https://github.com/gazebosim/ros_gz), rcl_interfaces and
 action_msgs (Apache-2.0).
 A module, and no files: FMUs take modules along.
@@ -43,6 +44,10 @@ float32[4] range_covar
 float32[4] beam_quality
 float32[4] beam_velocity
 float32[4] beam_velocity_covar
+""",
+    "nmea_msgs/msg/Sentence": """\
+std_msgs/Header header
+string sentence
 """,
     "ros_gz_interfaces/msg/Float32Array": """\
 float32[] data
