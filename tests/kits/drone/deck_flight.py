@@ -17,6 +17,30 @@ def at_rest(*value: float) -> Motion:
     return lambda t: np.array(value, dtype=float)
 
 
+class Swing:
+    """A pad that swings with 1.15 times the frequency of a peak period, in closed form.
+
+    Its place, velocity and acceleration at 0 s are given, {n}.
+    """
+
+    def __init__(self, place: Any, velocity: Any, acceleration: Any, period: float) -> None:
+        self.omega = 1.15 * 2.0 * np.pi / period
+        self._place, self._v, self._a = map(np.array, (place, velocity, acceleration))
+
+    def place(self, t: float) -> Any:
+        c, s, w = np.cos(self.omega * t), np.sin(self.omega * t), self.omega
+        return self._place + self._v * s / w + self._a * (1.0 - c) / w**2
+
+    def velocity(self, t: float) -> Any:
+        return self.derivatives(t)[0]
+
+    def derivatives(self, t: float) -> tuple[Any, Any, Any]:
+        """Return velocity, acceleration and jerk."""
+        c, s, w = np.cos(self.omega * t), np.sin(self.omega * t), self.omega
+        v = self._v * c + self._a * s / w
+        return v, self._a * c - self._v * w * s, -(w**2) * v
+
+
 class Flight:
     """Exact sights and reports every 0.05 s, ``delay`` s late; motions are functions of time, {n}.
 

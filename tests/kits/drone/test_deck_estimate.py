@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from seatrial_kits.drone.landing.prediction import PER_PERIOD, WINDOW
-from tests.kits.drone.deck_flight import Flight, H, at_rest
+from tests.kits.drone.deck_flight import Flight, H, Swing, at_rest
 
 PAD = (1.0, -2.0, -0.3)
 
@@ -35,23 +35,17 @@ def test_a_late_sight_counts_from_where_the_drone_was():
 
 
 @pytest.mark.parametrize("delay", [0.0, 0.1])
-def test_a_deck_that_accelerates_is_followed_and_foreseen(delay):
-    a, v = np.array([0.3, -0.2, 0.4]), np.array([-0.5, 0.4, 0.2])
+def test_a_deck_that_swings_is_followed_and_foreseen(delay):
+    swing = Swing(PAD, velocity=(-0.5, 0.4, 0.2), acceleration=(0.3, -0.2, 0.4), period=4.0)
     flight = Flight(delay=delay, wave_period=4.0)
-    flight.pad = lambda t: np.array(PAD) + v * t + a * t * t / 2
-    flight.pad_velocity = lambda t: v + a * t
+    flight.pad, flight.pad_velocity = swing.place, swing.velocity
     flight.position = lambda t: np.array([0.0, 0.0, -3.0])
-    control = flight.to(4.01)
-    late, jerk = 4.0 - delay, -((1.15 * 2 * math.pi / 4.0) ** 2)
+    control = flight.to(8.01)
+    late = 8.0 - delay
     for age in (0.0, 0.2, 0.5):
-        place, speed = flight.pad(late), flight.pad_velocity(late)
-        expected = [
-            place + speed * age + a * age**2 / 2 + jerk * speed * age**3 / 6,
-            speed + a * age + jerk * speed * age**2 / 2,
-            a + jerk * speed * age,
-        ]
-        # What the filter knew first, rest, is forgotten but for a few thousandths.
-        np.testing.assert_allclose(control.deck_at(late + age), expected, atol=5e-3)
+        expected = [swing.place(late + age), *swing.derivatives(late + age)[:2]]
+        # What the filter knew first, rest, is forgotten but for some 1e-4.
+        np.testing.assert_allclose(control.deck_at(late + age), expected, atol=1e-3)
     # No farther than 0.5 s.
     np.testing.assert_array_equal(control.deck_at(late + 3.0), control.deck_at(late + 0.5))
     np.testing.assert_array_equal(control.deck_at(late - 3.0), control.deck_at(late))

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from tests.kits.drone.deck_flight import Flight, H, at_rest
+from tests.kits.drone.deck_flight import Flight, H, Swing, at_rest
 
 TRACK, WAIT, DESCEND, LANDED, GO_AROUND, ABORT = 3.0, 4.0, 5.0, 6.0, 7.0, 8.0
 FEET = 0.25  # m, below the CG
@@ -40,24 +40,23 @@ def test_orders_of_a_descent(control, seed):
 
 @pytest.mark.parametrize("settle", [0.0, 10.0])
 def test_a_deck_that_moves_is_fed_forward(settle):
-    v, a = np.array([0.2, -0.3, 0.1]), np.array([0.15, 0.1, -0.2])
+    swing = Swing((0.0, 0.0, 0.0), (0.2, -0.3, 0.1), (0.15, 0.1, -0.2), period=4.0)
     flight = Flight(settle=settle, wave_period=4.0)
-    flight.pad = lambda t: v * t + a * t * t / 2
-    flight.pad_velocity = flight.velocity = lambda t: v + a * t
+    flight.pad = swing.place
+    flight.pad_velocity = flight.velocity = swing.velocity
     flight.position = lambda t: flight.pad(t) - [0.1, -0.05, 1.0 + FEET]
     flight.deck = at_rest(0.0, 0.0, 0.4)
     flight.to(4.0)
     slip = np.array([0.3, 0.2, -0.25])
-    flight.velocity = lambda t: v + a * t + slip
+    flight.velocity = lambda t: swing.velocity(t) + slip
     control = flight.to(4.01)
-    deck, jerk = v + a * 4.0, -((1.15 * 2 * math.pi / 4.0) ** 2)
+    deck, a, _ = swing.derivatives(4.0)
     aside = 3.0 * np.array([0.1, -0.05]) - 3.4 * slip[:2] + 1.5 * np.array([0.1, -0.05]) * 401 * H
-    aside += a[:2] + 0.2 * jerk * deck[:2]
+    aside += swing.derivatives(4.2)[1][:2]
     down = 4.0 * (0.4 + 0.3 * 0.5 - slip[2]) + 0.7 * a[2]
     if settle:
         # Track: to the height above the mean of the pad, over the samples that there are.
-        times = 4.0 / 14 * np.arange(15)
-        level = np.mean(v[2] * times + a[2] * times**2 / 2) - 2.0
+        level = np.mean([swing.place(4.0 / 14 * n)[2] for n in range(15)]) - 2.0
         climb = max(-1.5, min(level - (flight.pad(4.0)[2] - 1.0), 1.0))
         down = 2.5 * (climb - (deck[2] + slip[2]))
     np.testing.assert_allclose(flight.acceleration(), [*aside, down], atol=0.02)

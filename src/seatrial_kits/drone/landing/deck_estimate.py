@@ -17,8 +17,8 @@ _SIGHT = 0.02
 """Noise of a sight, m, 1 sigma."""
 _SPEED = 0.02
 """Noise of a reported velocity, m/s."""
-_JERK = 1.0
-"""Spectral density of the pad's jerk, m2/s5."""
+_SWING = 0.4
+"""Acceleration of the pad that an oscillation at one frequency leaves out, m/s2, 1 sigma."""
 _KEPT = 0.6
 """How long the drone's own positions are kept, s."""
 _FARTHEST = 0.5
@@ -29,9 +29,10 @@ class DeckEstimate(Component):
     """Mix-in: the pad's motion by a Kalman filter, and samples of heave and slopes.
 
     A sight gives the pad from where the drone was at the exposure, a report its velocity, both at
-    the time that they are of; nothing newer is used. From there to now and beyond the pad
-    moves with the jerk of an oscillation, -(1.15 omega_p)^2 v, for at most 0.5 s; omega_p is
-    that of ``wave_period``, the peak period as the craft reports it.
+    the time that they are of; nothing newer is used. Between them, and from there to now and beyond
+    for at most 0.5 s, the pad moves as an oscillation, a' = -omega^2 v, with 1.15 times the
+    frequency of ``wave_period``, the peak period as the craft reports it. The filter adds white
+    jerk of the density 2 omega s^2: an acceleration of s = 0.4 m/s2 that lasts for 1 / omega.
     """
 
     position = Input("m", "CG of the drone in north-east-down", axes="xyz", frame="n")
@@ -112,8 +113,7 @@ class DeckEstimate(Component):
         if not self._known:
             below = [self.position[0], self.position[1], self.position[2] + 1e3]
             return [below, [0.0, 0.0, 0.0], [0.0, 0.0, 0.0]]
-        omega = 1.15 * 2.0 * math.pi / max(self.wave_period, 0.1)
-        return tracking.ahead(self._x, min(max(t - self._at, 0.0), _FARTHEST), omega)
+        return tracking.ahead(self._x, min(max(t - self._at, 0.0), _FARTHEST), self._omega())
 
     def deck_heading(self) -> float:
         """Return the craft's heading as last reported, rad."""
@@ -128,6 +128,10 @@ class DeckEstimate(Component):
         return -prediction.mean(self._samples, 0)
 
     # ------------------------------------------------------------------ inside
+
+    def _omega(self) -> float:
+        """Return the frequency with which the pad is taken to swing, rad/s."""
+        return float(1.15 * 2.0 * math.pi / max(self.wave_period, 0.1))
 
     def _was(self, at: float) -> list[float]:
         """Return where the drone was, linear between two instants."""
@@ -147,7 +151,8 @@ class DeckEstimate(Component):
             return
         if at < self._at - 1e-6:
             return
-        x, P = tracking.moved_on(self._x, self._P, max(at - self._at, 0.0), _JERK)
+        omega, later = self._omega(), max(at - self._at, 0.0)
+        x, P = tracking.moved_on(self._x, self._P, later, omega, 2.0 * omega * _SWING**2)
         self._at = max(at, self._at)
         self._x, self._P = tracking.corrected(x, P, row, value, _SPEED if row else _SIGHT)
         self._sample()

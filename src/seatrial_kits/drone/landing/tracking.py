@@ -6,6 +6,7 @@ axes have the same noise, and so one covariance (3, 3). Metres and seconds, {n}.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
 Rows = list[list[float]]
@@ -22,16 +23,16 @@ def first(position: Sequence[float]) -> tuple[Rows, Rows]:
     )
 
 
-def moved_on(x: Rows, P: Rows, h: float, jerk: float) -> tuple[Rows, Rows]:
-    """Return state and covariance ``h`` s later; ``jerk`` is its spectral density, m2/s5."""
+def moved_on(x: Rows, P: Rows, h: float, omega: float, jerk: float) -> tuple[Rows, Rows]:
+    """Return state (`ahead`) and covariance ``h`` s later; ``jerk`` is its density, m2/s5."""
     noise = [
         [h**5 / 20.0, h**4 / 8.0, h**3 / 6.0],
         [h**4 / 8.0, h**3 / 3.0, h**2 / 2.0],
         [h**3 / 6.0, h**2 / 2.0, h],
     ]
     # F P F^T, with F^T from the right as F on the columns: P is symmetric.
-    grown = _shifted(_columns(_shifted(P, h)), h)
-    return _shifted(x, h), [
+    grown = ahead(_columns(ahead(P, h, omega)), h, omega)
+    return ahead(x, h, omega), [
         [p + jerk * q for p, q in zip(row, own, strict=True)]
         for row, own in zip(grown, noise, strict=True)
     ]
@@ -61,25 +62,18 @@ def corrected(
 
 
 def ahead(x: Rows, h: float, omega: float) -> Rows:
-    """Return the state ``h`` s later with the jerk of an oscillation, -omega^2 v."""
-    jerk = [-(omega**2) * v for v in x[1]]
-    third, second = h**3 / 6.0, h**2 / 2.0
-    place, speed, push = _shifted(x, h)
-    return [
-        [p + j * third for p, j in zip(place, jerk, strict=True)],
-        [v + j * second for v, j in zip(speed, jerk, strict=True)],
-        [a + j * h for a, j in zip(push, jerk, strict=True)],
-    ]
+    """Return the state ``h`` s later of an oscillation, of which a' = -omega^2 v.
 
-
-def _shifted(rows: Rows, h: float) -> Rows:
-    """Return F x, F = ((1, h, h^2 / 2), (0, 1, h), (0, 0, 1))."""
-    place, speed, push = rows
-    half = h * h / 2.0
+    F = ((1, s / omega, (1 - c) / omega^2), (0, c, s / omega), (0, -omega s, c)) with the cosine c
+    and sine s of omega h.
+    """
+    c, s = math.cos(omega * h), math.sin(omega * h)
+    mean, half = s / omega, (1.0 - c) / omega**2
+    place, speed, push = x
     return [
-        [p + h * v + half * a for p, v, a in zip(place, speed, push, strict=True)],
-        [v + h * a for v, a in zip(speed, push, strict=True)],
-        push,
+        [p + mean * v + half * a for p, v, a in zip(place, speed, push, strict=True)],
+        [c * v + mean * a for v, a in zip(speed, push, strict=True)],
+        [c * a - omega * s * v for v, a in zip(speed, push, strict=True)],
     ]
 
 
