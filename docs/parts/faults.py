@@ -140,7 +140,7 @@ def _section(kinds: dict[str, Kind]) -> str:
 def fault_names() -> str:
     """Every fault in a line."""
     return table(
-        ("fault", "what", "on", "settings"),
+        ("fault", "description", "acts on", "settings"),
         [
             (
                 f"[`{name}`](#{name})",

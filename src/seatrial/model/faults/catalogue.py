@@ -45,8 +45,8 @@ class Kind:
     """
 
 
-_EVERY = Setting("duration", "new numbers come so often, counted from its begin", 0.1)
-_WRAPS = {"wraps": Setting("range", "y is brought into this range by whole turns, as an angle", 0)}
+_EVERY = Setting("duration", "interval of new random numbers, from `at`", 0.1)
+_WRAPS = {"wraps": Setting("range", "y wraps into this range, as an angle", 0)}
 
 
 def _level(meaning: str) -> Setting:
@@ -55,30 +55,30 @@ def _level(meaning: str) -> Setting:
 
 SIGNALS = {
     "fixed": Kind(
-        "one value, whatever was measured or commanded",
+        "a constant in place of the signal",
         ("signal",),
         "y = x + s (value − x)",
-        {"value": _level("what it is; a text or a truth value too")},
+        {"value": _level("the constant; a text or a truth value too")},
         grows=True,
     ),
     "bias": Kind(
-        "a constant error; with `grows_over` one that comes slowly",
+        "a constant error; with `grows_over` a ramp up to it",
         ("signal", "measurement"),
         "y = x + s value",
-        {"value": _level("what is added"), **_WRAPS},
+        {"value": _level("the added error"), **_WRAPS},
         grows=True,
     ),
     "drift": Kind(
-        "an error that grows for ever: gyro drift, a spoofed position that walks off",
+        "an error that grows linearly: gyro drift, a spoofed position",
         ("signal", "measurement"),
         "y = x + rate (t − at)",
-        {"rate": Setting("rate", "how fast the error grows"), **_WRAPS},
+        {"rate": Setting("rate", "growth of the error"), **_WRAPS},
     ),
     "scale": Kind(
         "a wrong gain; loss of effectiveness of an actuator; −1 for reversed leads",
         ("signal", "measurement"),
         "y = x (1 + s (factor − 1))",
-        {"factor": Setting("number", "by which it is multiplied")},
+        {"factor": Setting("number", "the gain")},
         grows=True,
     ),
     "noise": Kind(
@@ -89,40 +89,40 @@ SIGNALS = {
         grows=True,
     ),
     "deviation": Kind(
-        "a compass beside iron or currents",
+        "magnetic deviation of a compass",
         ("signal", "measurement"),
         "y = x + s (A + B sin x + C cos x + D sin 2x + E cos 2x)",
         {"coefficients": Setting("coefficients", "A, B, C, D, E"), **_WRAPS},
         grows=True,
     ),
     "stuck": Kind(
-        "the last value for ever: a frozen sensor, a jammed shaft",
+        "the last value, held: a frozen sensor, a jammed shaft",
         ("signal", "device"),
         "y = x(at)",
         {},
     ),
     "dropout": Kind(
-        "values that do not come, so that the one before stays",
+        "lost values; readers keep the last one",
         ("signal",),
-        "y = what it was in the interval before, with probability s p in interval i; else x",
+        "y = y of interval i − 1 with probability s p in interval i; else x",
         {"probability": Setting("probability", "p"), "every": _EVERY},
         grows=True,
     ),
     "garbage": Kind(
         "random values",
         ("signal", "device"),
-        "y uniform from low to high, anew in each interval",
+        "y uniform in [low, high], drawn in each interval",
         {
-            "low": Setting("value", "the least"),
-            "high": Setting("value", "the greatest"),
+            "low": Setting("value", "lower limit"),
+            "high": Setting("value", "upper limit"),
             "every": _EVERY,
         },
     ),
     "delay": Kind(
-        "values that come late",
+        "late values",
         ("signal",),
-        "y(t) = x(t − s time), x(at) before there is one",
-        {"time": Setting("duration", "how late")},
+        "y(t) = x(max(at, t − s time))",
+        {"time": Setting("duration", "the delay")},
         grows=True,
     ),
     "lag": Kind(
@@ -132,123 +132,126 @@ SIGNALS = {
         {"time": Setting("duration", "time constant")},
     ),
     "rate-limit": Kind(
-        "an actuator that moves slowly",
+        "a slow actuator",
         ("signal",),
         "|dy/dt| ≤ rate, y(at) = x(at)",
-        {"rate": Setting("rate", "the fastest that it moves")},
+        {"rate": Setting("rate", "the largest rate")},
     ),
     "limit": Kind(
-        "a range that has become smaller: a stop, a derated drive",
+        "a smaller range: a stop, a derated drive",
         ("signal",),
         "y = min(max(x, low), high)",
-        {"low": Setting("value", "the least"), "high": Setting("value", "the greatest")},
+        {"low": Setting("value", "lower limit"), "high": Setting("value", "upper limit")},
     ),
     "runaway": Kind(
-        "an actuator that goes to its end, whatever is commanded",
+        "an actuator that runs to its end position against its command",
         ("signal",),
-        "y = x(at) ± rate (t − at) as far as value, and stays there",
-        {"value": _level("where it ends"), "rate": Setting("rate", "how fast it goes there")},
+        "y = x(at) ± rate (t − at) up to value",
+        {
+            "value": _level("the end position"),
+            "rate": Setting("rate", "rate towards the end position"),
+        },
     ),
-    "nan": Kind("a computation that failed", ("signal", "component"), "y is not a number", {}),
+    "nan": Kind("a failed computation", ("signal", "component"), "y is not a number", {}),
 }
 
 STREAMS = {
     "loss": Kind(
-        "packets, sentences or bytes that do not arrive; probability 1 is a broken link",
+        "lost packets, sentences or bytes; a broken link with probability 1",
         ("stream",),
         "chunk k is lost with probability s p",
         {"probability": Setting("probability", "p", 1.0)},
         grows=True,
     ),
     "latency": Kind(
-        "a slow link; with `jitter` one that is so unevenly",
+        "a slow link, with `jitter` of random delay",
         ("stream",),
-        "chunk k comes s (time + jitter u_k) later, in its order",
+        "chunk k arrives s (time + jitter u_k) later, u_k uniform in [0, 1], in order",
         {
-            "time": Setting("duration", "for all", 0.0),
-            "jitter": Setting("duration", "the most that is added to it", 0.0),
+            "time": Setting("duration", "delay of each chunk", 0.0),
+            "jitter": Setting("duration", "largest additional delay", 0.0),
         },
         grows=True,
     ),
     "reorder": Kind(
-        "packets that others overtake",
+        "packets out of order",
         ("stream",),
-        "chunk k comes `time` later than its order with probability s p",
-        {"probability": Setting("probability", "p"), "time": Setting("duration", "how much later")},
+        "chunk k arrives `time` later with probability s p; later chunks overtake it",
+        {"probability": Setting("probability", "p"), "time": Setting("duration", "the delay")},
         grows=True,
     ),
     "duplicate": Kind(
-        "packets that come twice",
+        "duplicate packets",
         ("stream",),
-        "chunk k comes twice with probability s p",
+        "chunk k arrives twice with probability s p",
         {"probability": Setting("probability", "p")},
         grows=True,
     ),
     "corruption": Kind(
-        "noise on the line",
+        "bit errors",
         ("stream",),
-        "each bit is wrong with probability s p",
-        {"probability": Setting("probability", "p, of a bit")},
+        "each bit is inverted with probability s p",
+        {"probability": Setting("probability", "p, for each bit")},
         grows=True,
     ),
 }
 
 DEVICES = {
     "off": Kind(
-        "no measurement, no command arrives; a node is out of the bus",
+        "a device without power; a node that has left the bus",
         ("device", "bus"),
-        "`valid` is false, values stay; a thruster stops, a shaft stays where it is",
+        "`valid` is false and values stay; a thruster stops; a shaft keeps its position",
         {},
     ),
     "wrong": Kind(
         "a damaged device",
         ("device",),
-        "a tenth of its span too much; half of the thrust; a tenth of its range off",
+        "a sensor is 10 % of its span off; a thruster halves its thrust; a shaft is 10 % off",
         {},
     ),
     "slow": Kind(
         "a slow device",
         ("device",),
-        "every tenth measurement; a lag ten times as long, or a tenth of the rate",
+        "a sensor gives each tenth measurement; an actuator has 10 times its lag, or 1/10 rate",
         {},
     ),
     "delayed": Kind(
-        "a late device", ("device",), "10 sample periods late; commands 0.5 s late", {}
+        "a late device", ("device",), "measurements are 10 sample periods late, commands 0.5 s", {}
     ),
     "intermittent": Kind(
         "a loose contact",
         ("device",),
-        "each measurement, or commands in every 0.2 s, lost with probability ½",
+        "each measurement, or the commands of each 0.2 s, are lost with probability ½",
         {},
     ),
     "babbling": Kind(
-        "a node that never stops to send", ("bus",), "frames of identifier 0 without a pause", {}
+        "a node that sends without a pause", ("bus",), "frames of identifier 0 fill the bus", {}
     ),
     "defective": Kind(
-        "a node with a broken transmitter, until it is bus-off",
+        "a node with a broken transmitter; it becomes bus-off",
         ("bus",),
-        "each frame that it sends is broken",
+        "each frame of the node has an error",
         {},
     ),
 }
 
 COMPONENTS = {
     "hang": Kind(
-        "a program that is stopped, and goes on",
+        "a suspended program; after `for` it continues",
         ("component",),
-        "all outputs and connected inputs are x(at); nothing is sent or received",
+        "outputs and connected inputs are x(at); no bytes are sent or received",
         {},
     ),
     "crash": Kind(
-        "a program that ends; after `for` it starts anew",
+        "a crashed program; after `for` it restarts",
         ("component",),
-        "as `hang`; with `for`, it starts then as at the start of the run",
+        "as `hang`; the component then starts as at the start of the run",
         {},
     ),
     "power-loss": Kind(
-        "no supply: brown-out and reset of a board; after `for` it starts anew",
+        "brown-out and reset of a board; after `for` it restarts",
         ("component",),
-        "numbers are 0, switches false, nothing is sent or received; then as `crash`",
+        "numbers are 0, switches false, no bytes are sent or received; then as `crash`",
         {},
     ),
 }
