@@ -62,8 +62,8 @@ def test_a_current_comes_on_top_of_the_waves(z, depth):
     found = around(IN_SPACE._replace(z=z), orbital=Given((0.6, MOVES)), current=current)
     assert current.asked == [(T, depth)]
     met = {"water_elevation": 0.6, "water_shear": SHEAR}
-    met["water_velocity"] = MOVES[:3] + [*STREAM, 0]
-    met["water_acceleration"] = MOVES[3:] + [*RATE, 0]
+    met["water_velocity"] = [*(MOVES[:2] + STREAM), MOVES[2]]
+    met["water_acceleration"] = [*(MOVES[3:5] + RATE), MOVES[5]]
     assert_are(found, **met)
 
 
