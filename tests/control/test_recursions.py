@@ -14,20 +14,9 @@ from seatrial.control.rudder_helm import RudderHelm
 from seatrial.control.speed_hold import SpeedHold
 from seatrial.control.station_keeping import HEADING_ONLY, HOLD, IDLE, RETURN, StationKeeping
 from seatrial.control.tilt_hold import TiltHold
-from tests.devices.running import started
+from tests.devices.running import over, started
 
 H, STEPS = 0.2, 60
-
-
-def outputs(component, names, inputs):
-    """Return the outputs of each step, whose inputs are those of a row."""
-    rows = []
-    for k, row in enumerate(inputs):
-        for name, value in row.items():
-            component.set(name, value)
-        rows.append([component.get(name) for name in names])
-        component.advance(k * H, H)
-    return np.array(rows, dtype=float)
 
 
 def clip(x, most):
@@ -61,7 +50,7 @@ def test_an_axis_is_held_by_its_recursion(kind):
     if kind is TiltHold:
         held.set("enabled", True)
     rows = [{place: a, wanted: b, "surge": c} for a, b, c in zip(y, goal, surge, strict=True)]
-    found = outputs(held, [output], rows)[:, 0]
+    found = over(held, [output], H, rows)[:, 0]
     w, zeta, sigma, p = 0.6, 1.3, 0.15, AXIS
     target, before, f, speed, integral, expected = y[0], None, 0.0, 0.0, 0.0, []
     kept = math.exp(-H / p["rate_filter"])
@@ -89,7 +78,7 @@ def test_a_speed_is_held_by_its_recursion():
     hold = started(SpeedHold, period=H, quadratic_drag=7.7, capacity=14.0, enabled=True, **values)
     wanted, speed = draw.normal(0, 0.8, (2, STEPS))
     rows = [{"speed_wanted": a, "speed": b} for a, b in zip(wanted, speed, strict=True)]
-    found, integral, expected = outputs(hold, ["surge"], rows)[:, 0], 0.0, []
+    found, integral, expected = over(hold, ["surge"], H, rows)[:, 0], 0.0, []
     for U, u in zip(wanted, speed, strict=True):
         demand = 2 * zeta * w * m * (U - u) + integral + 3.1 * U + 7.7 * abs(U) * U
         expected.append(clip(demand, 14.0))
@@ -123,7 +112,7 @@ def test_a_station_is_kept_by_its_recursion():
         for off, psi, v, r, valid in zip(away, headings, velocities, rates, fixed, strict=True)
     ]  # fmt: skip
     names = ("mode", "distance", "surge_force", "yaw_moment")
-    found = outputs(keeper, names, rows)
+    found = over(keeper, names, H, rows)
     mode, backwards, XI, NI, missed, expected = IDLE, False, np.zeros(2), 0.0, math.inf, []
     for e, psi, v, r, valid in zip(away, headings, velocities, rates, fixed, strict=True):
         bow, off = np.array([math.cos(psi), math.sin(psi)]), math.hypot(*e)
