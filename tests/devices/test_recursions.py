@@ -184,3 +184,37 @@ def test_a_wind_of_the_trial_is_met_at_its_height():
     assert wind.get("speed") == pytest.approx(speed)
     assert wind.get("direction") == 2.5
     assert complex(*wind.get("velocity")) == pytest.approx(speed * np.exp(2.5j))
+
+
+def test_noise_that_is_stated_for_a_bandwidth_is_a_share_of_it_in_samples():
+    unit = ideal(Imu, period=0.02, gyro_noise=(0.1, 0.2, 0.4), gyro_bandwidth=8.0, seed=4.0)
+    found = over(unit, ["gyro"], 0.02, [{}] * 20)
+    share = 1 / math.sqrt(2 * 0.02 * 8.0)
+    for k, shown in enumerate(found):
+        drawn = unit.generator(k)
+        drawn.random()  # whether the measurement is lost
+        np.testing.assert_allclose(shown, [0.1, 0.2, 0.4] * drawn.normal(size=8)[:3] * share)
+
+
+def test_an_intermittent_sensor_loses_what_its_draw_says():
+    probe = started(Probe, period=0.1, fault="intermittent", truth=(3.0, 4.0))
+    found = over(probe, ["valid"], 0.1, [{}] * 30)[:, 0]
+    drawn = [probe.generator(k, 1).random() for k in range(30)]
+    np.testing.assert_array_equal(found, np.array(drawn) >= 0.5)
+
+
+def test_a_fault_of_one_output_knows_the_time_of_a_run_that_began_late():
+    probe = Probe("probe")
+    probe.set("period", 0.1)
+    probe.set("fault", "drift of=y rate=2.0 at=5.25")
+    probe.setup(5.0)
+    probe.initialise()
+    probe.begin()
+    found = []
+    for k in range(8):
+        found.append(probe.get("y")[0])
+        probe.advance(5.0 + 0.1 * k, 0.1)
+    t = 5.0 + 0.1 * np.arange(8)
+    # It is there from the first measurement on: its time is that of its beginning.
+    expected = 2.0 * np.maximum(t - 5.25, 0.0)
+    np.testing.assert_allclose(found, expected, atol=1e-9)
