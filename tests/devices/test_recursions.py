@@ -218,3 +218,11 @@ def test_a_fault_of_one_output_knows_the_time_of_a_run_that_began_late():
     # It is there from the first measurement on: its time is that of its beginning.
     expected = 2.0 * np.maximum(t - 5.25, 0.0)
     np.testing.assert_allclose(found, expected, atol=1e-9)
+
+
+@pytest.mark.parametrize(("surfacing", "samples"), [(0.75, 4), (0.6, 3)])
+def test_a_fix_comes_a_time_after_surfacing(surfacing, samples):
+    gnss = ideal(Gnss, period=0.2, reacquisition=surfacing, position=(0.0, 0.0, 1.0))
+    rows = [{"position": (0.0, 0.0, 1.0 if k < 3 else -1.0)} for k in range(12)]
+    found = over(gnss, ["valid"], 0.2, rows)[:, 0]
+    np.testing.assert_array_equal(found, np.arange(12) >= 3 + samples)
