@@ -10,6 +10,7 @@ from seatrial_kits.ships.control.dynamic_positioning import DynamicPositioning
 from seatrial_kits.ships.control.heading_autopilot import HeadingAutopilot
 from seatrial_kits.ships.control.reference_filter import HeadingReference
 from seatrial_kits.ships.devices.marine_engine import MarineEngine
+from seatrial_kits.ships.devices.rudder_machine import RudderMachine
 from tests.devices.running import over, started
 
 STEPS, H = 60, 0.3
@@ -212,3 +213,32 @@ def test_the_telegraph_orders_its_shares(word, share):
         remote.advance(0.2 * k, 0.2)
     assert ordered.get("speed") == remote.get("speed")
     assert (ordered.get("speed") != 0.0) == (share != 0.0)
+
+
+@pytest.mark.parametrize(
+    ("fault", "goal", "slower"), [("none", 0.1, 1), ("wrong", 0.22, 1), ("slow", 0.1, 10)]
+)
+@pytest.mark.parametrize(("positive", "way"), [("port", 1), ("starboard", -1)])
+def test_a_rudder_machine_lags_within_its_rate(fault, goal, slower, positive, way):
+    machine = started(
+        RudderMachine, limit=0.6, rate=0.05, time_constant=0.8, positive=positive, max_step=0.01,
+        angle_start=0.03, command=0.1,
+    )  # fmt: skip
+    angle, expected = 0.03, []
+    found = over(machine, ["angle"], 0.4, [{"fault": fault}] * 20)[:, 0]
+    for _ in range(20):
+        expected.append(angle)
+        left = 0.4 / slower
+        off = way * goal - angle
+        # At its rate until the lag asks for less, then as the lag does.
+        fast = min(left, max(0.0, (abs(off) - 0.05 * 0.8) / 0.05))
+        angle += math.copysign(0.05 * fast, off)
+        off = way * goal - angle
+        angle = way * goal - off * math.exp(-(left - fast) / 0.8)
+    np.testing.assert_allclose(found, expected, atol=1e-5)
+
+
+def test_a_rudder_stops_at_its_limit():
+    machine = started(RudderMachine, limit=0.6, rate=5.0, time_constant=0.1, command=-2.0)
+    machine.advance(0.0, 5.0)
+    assert machine.get("angle") == pytest.approx(-0.6)
