@@ -128,3 +128,19 @@ def test_a_hull_shares_out_the_coefficients_of_its_craft(chi, spacing):
     expected[3:] += np.cross(place, pressure, axis=0)
     expected *= np.exp(-1j * K * 0.3 * math.cos(chi))
     np.testing.assert_allclose(found, expected, rtol=1e-9, atol=1e-9)
+
+
+@pytest.mark.parametrize("gone", ["beam", "draught", "area"])
+def test_a_section_that_is_not_there_has_no_slice(gone):
+    made = WaveHull("hull")
+    values = {**HULL, "hull_spacing": 1.8, "hull_freeboard": 0.3}
+    values[f"section_{gone}"] = [0.0, 0.0, *HULL[f"section_{gone}"][2:]]
+    for name, value in values.items():
+        made.set(name, value)
+    slices = made.slices()
+    assert len(slices) == 2 * 18  # of 20 strips two lie between the stations without
+    assert [part.length for part in slices] == [pytest.approx(0.2)] * 36
+    middles = [part.outline[:, 0].mean() for part in slices]
+    assert sum(middle > 0 for middle in middles) == 18
+    tops = [part.outline[:, 1].min() for part in slices]
+    assert tops == [pytest.approx(-0.3)] * 36
