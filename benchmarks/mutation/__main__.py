@@ -119,7 +119,7 @@ def covered(seed: int) -> dict[str, dict]:
         found[name] = record
     left = [name for name, each in found.items() if each["status"]]
     if left:
-        print("left out, as they fail without a mutant or take too long:", *left)
+        print("left out (no test of the file runs, or one fails or is too slow):", *left)
     return {name: each for name, each in found.items() if name not in left}
 
 

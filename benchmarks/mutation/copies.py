@@ -18,7 +18,7 @@ from .operators import Mutant
 ROOT = Path(__file__).parents[2]
 BUILD = ROOT / "build" / "mutation"
 COPY = BUILD / "copy"
-KITS = ("drone", "fitted", "sailing", "ships", "underwater", "videoray")
+KITS = ("drone", "fitted", "panels", "sailing", "ships", "underwater", "videoray")
 """Kits with equations."""
 PACKAGES = (
     *(f"seatrial.{name}" for name in ("physics", "devices", "control")),

@@ -3,6 +3,8 @@
 from collections.abc import Callable, Mapping
 from typing import Any, TypeVar
 
+import numpy as np
+
 from seatrial.model.component import Component
 
 C = TypeVar("C", bound=Component)
@@ -38,3 +40,14 @@ def run(
         if t_ms < stop_ms:
             component.advance(t_ms / 1000, step_ms / 1000)
     return rows
+
+
+def over(component, names, h, inputs):
+    """Return outputs at the beginning of each step of ``h``, s, whose inputs are a row."""
+    rows = []
+    for k, row in enumerate(inputs):
+        for name, value in row.items():
+            component.set(name, value)
+        rows.append(np.hstack([component.get(name) for name in names]))
+        component.advance(k * h, h)
+    return np.array(rows)

@@ -35,7 +35,8 @@ TEXTS = {"fault": ("none", *FAULTS), "target_kind": TARGETS}
 SELDOM = {
     "Mooring": {"force": {"point", "velocity"}},  # from its first step on
     "SailingGuidance": {
-        "wearing": {"leg", "leg_from", "leg_to", "target_heading", "target_speed", "target_valid"},
+        "wearing": {"leg", "leg_from", "leg_speed", "leg_to"}
+        | {"target_heading", "target_speed", "target_valid"},
         "cross_track": {"home", "velocity_n", *(f"target_{x}" for x in ("kind", "valid"))}
         | {"target_position", "target_speed", "target_velocity", "leg_speed"},
         "state": {"leg_speed"},

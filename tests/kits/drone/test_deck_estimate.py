@@ -149,3 +149,12 @@ def test_with_a_window_pad_and_deck_are_told_of_its_time():
     assert control.get("time_ahead") == window
     assert control.get("pad_ahead") == pytest.approx(flight.pad(window), abs=0.02)
     assert control.get("deck_ahead") == pytest.approx([0.0, 0.0, 0.0], abs=1e-3)
+
+
+def test_a_late_sight_of_a_drone_that_swings_counts_from_where_it_was():
+    flight = Flight(delay=0.125)
+    flight.pad = at_rest(*PAD)
+    flight.position = lambda t: np.array([math.sin(4 * t), math.cos(3 * t), -2.0 - t**2])
+    control = flight.to(1.02)
+    # Linear over 10 ms: h^2 / 8 of its acceleration.
+    np.testing.assert_allclose(control.deck_at(1.0)[0], PAD, atol=5e-4)

@@ -7,7 +7,14 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from seatrial_kits.fitted.allocation.steering import Turning, angle_for, fitting
+from seatrial_kits.fitted.allocation.steering import (
+    Shares,
+    Turning,
+    angle_for,
+    as_one,
+    fitting,
+    with_directions,
+)
 
 DEG = math.pi / 180.0
 angles = st.floats(-10.0, 10.0)
@@ -79,3 +86,22 @@ def test_abeam_an_end_is_not_left_for_a_little_more():
     for now in (-30.0, 30.0):
         for direction in (89.0, 91.0):
             assert angle_for(sector, force(0.4, direction * DEG), now * DEG) == now * DEG
+
+
+def test_two_on_one_steering_angle_give_their_sum_and_what_the_weaker_can():
+    one = Turning([1.0, 2.0, 3.0], [4.0, 5.0, 6.0], -0.4, 0.7, 0.5, 0.8)
+    other = Turning([10.0, 30.0, 20.0], [50.0, 40.0, 70.0], -9.0, 9.0, 0.3, 0.9)
+    third = Turning([0.1, 0.2, 0.4], [0.5, 0.6, 0.8], -9.0, 9.0, 0.6, 0.7)
+    found = as_one([one, other, third])
+    np.testing.assert_allclose(found.along, [11.1, 32.2, 23.4])
+    np.testing.assert_allclose(found.abeam, [54.5, 45.6, 76.8])
+    assert found[2:] == (-0.4, 0.7, 0.3, 0.7)
+
+
+def test_parts_that_turn_stand_beside_the_others_with_what_they_can():
+    turning = Turning([1.0, 2.0], [-3.0, 5.0], -4.0, 4.0, 0.3, 0.8)
+    found = with_directions(Shares([[7.0, 8.0]], [-0.1], [0.2]), [turning], [0.6])
+    along, abeam = np.array([1.0, 2.0]), np.array([-3.0, 5.0])
+    expected = math.cos(0.6) * along + math.sin(0.6) * abeam
+    np.testing.assert_allclose(found.columns, [[7.0, 8.0], expected])
+    assert (list(found.low), list(found.high)) == ([-0.1, -0.3], [0.2, 0.8])

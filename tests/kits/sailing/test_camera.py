@@ -137,3 +137,28 @@ def test_off_is_not_an_empty_frame(fault, valid):
     component = camera(diameter=0.0, fault=fault)
     frames(component, 3, "valid")
     assert component.get("valid") is valid
+
+
+def test_what_is_not_there_is_drawn_over_the_image():
+    settings = {"width": 1.1, "direction": 2.6, "false_size": 0.2, "size_min": 0.03, "seed": 2}
+    component, width = camera(diameter=0.0, false_detection=0.6, **settings), 1.1
+    rows = frames(component, 40, "detected", "bearing", "size", "kind")
+    for k, (count, bearings, sizes, kinds) in enumerate(rows):
+        there, where, how_large, what = component.generator(k, 3).random(10)[:4]
+        assert count == (there < 0.6)
+        if count:
+            bearing = math.remainder(2.6 + (where - 0.5) * width, math.tau)
+            assert bearings[0] == pytest.approx(bearing, abs=1e-12)
+            assert sizes[0] == pytest.approx(0.03 + 0.17 * how_large)
+            assert kinds[0] == (1 if what < 0.5 else 2)
+
+
+@pytest.mark.parametrize(("elevation", "count"), [(7.9, 1), (8.1, 0), (-7.9, 1), (-8.1, 0)])
+def test_the_image_has_a_height(elevation, count):
+    place = (20 * math.cos(elevation * DEG), 0.0, -20 * math.sin(elevation * DEG))
+    assert camera(place, height=16 * DEG).get("detected") == count
+
+
+def test_from_within_nothing_is_seen():
+    assert camera((0.9, 0.0, 0.0), 2.0, height=3.0).get("detected") == 0
+    assert camera((1.1, 0.0, 0.0), 2.0, height=3.0).get("detected") == 1

@@ -68,3 +68,27 @@ def test_along_waypoints_round_their_corners():
     after(obstacle, 3)
     assert obstacle.get("velocity") == pytest.approx([2, 0])
     assert obstacle.get("kind") == 2
+
+
+def test_a_mooring_lies_where_its_anchor_does():
+    drift = {"current": [0.3, 0.1], "wind": [2.0, -5.0], "leeway": 0.05}
+    buoy = started(Buoy, swing=4.0, anchor=[30.0, -20.0], offset=[1.0, 2.0], **drift)
+    assert buoy.get("position") == [31.0, -18.0, 0.0]
+    buoy.advance(0.0, 2.0)
+    assert buoy.get("position") == pytest.approx([31.8, -18.3, 0.0])
+    assert buoy.get("velocity") == pytest.approx([0.4, -0.15])
+    size = math.hypot(0.4, 0.15)
+    after(buoy, 400)
+    there = [30 + 4 * 0.4 / size, -20 - 4 * 0.15 / size, 0.0]
+    assert buoy.get("position") == pytest.approx(there, abs=1e-3)
+
+
+def test_an_obstacle_goes_round_corners_from_where_it_begins():
+    goals = {"count": 2.0, "waypoint_1": [13.0, -16.0, 5.0], "waypoint_2": [13.0, -4.0, 0.0]}
+    obstacle = started(MovingObstacle, begins_at=[10.0, -20.0], cruise=2.0, **goals)
+    # 5 m to the first, at 2 m/s, then 12 m east.
+    for seconds, place in ((2.0, [12.4, -16.8]), (2.0, [13.0, -13.0]), (9.0, [13.0, -4.0])):
+        obstacle.advance(obstacle.now, seconds)
+        assert obstacle.get("position") == pytest.approx([*place, 0.0])
+    assert obstacle.get("velocity") == pytest.approx([0.0, 1.0])
+    assert obstacle.get("kind") == 2

@@ -170,3 +170,34 @@ def test_gnss_below_the_surface_receives_nothing():
     assert rows == [[True, 1], [True, 2], [False, 2], [False, 2], [False, 2]]
     everywhere = ideal(Gnss, reception="everywhere", position=[0, 0, 9.0], **values)
     assert everywhere.get("valid")
+
+
+def received(sensor, outputs, count):
+    """Return what is received of each of ``count`` questions, one a second, at rest."""
+    rows = []
+    for k in range(count):
+        sensor.advance(float(k), 0.9)
+        rows.append([sensor.get(name) for name in outputs])
+        sensor.advance(k + 0.9, 0.1)
+    return rows
+
+
+def test_a_reflection_comes_from_farther_and_anywhere():
+    places = {"position": [30.0, 40.0, 2.0], "station_position": [3.0, 4.0, 1.0]}
+    usbl = ideal(Usbl, **places, period=1.0, outlier=0.4, outlier_range=25.0, seed=3)
+    away, bearing = 45.0, math.atan2(36.0, 27.0)
+    for k, (distance, seen) in enumerate(received(usbl, ["range", "bearing"], 20)):
+        reflected, farther, turned = usbl.generator(k, 2).random(3)
+        more = reflected < 0.4
+        assert distance == pytest.approx(away + more * farther * 25.0)
+        assert seen == pytest.approx((bearing + more * math.tau * turned) % math.tau)
+
+
+def test_each_range_of_a_net_has_reflections_of_its_own():
+    place = np.array([5.0, -8.0, 3.0])
+    lbl = ideal(Lbl, **NET, position=place, period=1.0, outlier=0.4, outlier_range=25.0, seed=3)
+    away = [math.dist(NET[f"transponder_{n}"], place) for n in range(1, 5)]
+    for k, (ranges,) in enumerate(received(lbl, ["ranges"], 15)):
+        drawn = lbl.generator(k, 2).random((len(ranges), 2))
+        late = np.where(drawn[:, 0] < 0.4, 25.0 * drawn[:, 1], 0.0)
+        np.testing.assert_allclose(ranges[:4], away + late[:4])

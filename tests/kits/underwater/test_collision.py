@@ -146,3 +146,37 @@ def test_a_capsule_shorter_than_it_is_thick_is_refused():
     with pytest.raises(InputError, match=r"boats: second_length is 0\.3 m: a capsule with"):
         collision.initialise()
         collision.begin()
+
+
+def test_over_a_step_the_force_is_that_of_its_middle_and_touches_are_counted():
+    law = {"stiffness": 700.0, "damping": 0.3, "friction": 0.0}
+    boats = Collision("boats")
+    hulls = {"first_length": 1.0, "first_radius": 0.5, "second_length": 1.4, "second_radius": 0.7}
+    for name, value in {**law, **hulls}.items():
+        boats.set(name, value)
+    # Two spheres, 3, 4 and 5 apart: 0.2 m of them overlap, or a gap of 0.3 m.
+    for name, value in (("position", [0.6, 0.8, 0.0]), ("velocity", [-0.9, -1.2, 0.4])):
+        boats.set(f"first_{name}", value)
+    boats.initialise()
+    boats.begin()
+    speed, overlap = 1.5, 0.2
+    assert boats.get("distance") == pytest.approx(-overlap)
+    assert boats.get("normal_force") == pytest.approx(700 * overlap * (1 + 0.3 * speed))
+    assert boats.get("first_force") == pytest.approx(
+        [0.6 * boats.get("normal_force"), 0.8 * boats.get("normal_force"), 0.0]
+    )
+    boats.advance(0.0, 0.04)
+    middle = 700 * (overlap + 0.02 * speed) * (1 + 0.3 * speed)
+    assert boats.get("normal_force") == pytest.approx(middle)
+    assert (boats.get("touches"), boats.get("impact_speed")) == (1, pytest.approx(1.5))
+    boats.set("first_velocity", [-0.3, -0.4, 0.0])
+    boats.advance(0.04, 0.04)
+    boats.set("first_position", [0.9, 1.2, 0.0])  # apart
+    boats.advance(0.08, 0.04)
+    assert boats.get("distance") == pytest.approx(0.3)
+    assert (boats.get("normal_force"), boats.get("touching")) == (0.0, False)
+    boats.set("first_position", [0.6, 0.8, 0.0])
+    boats.set("first_velocity", [-0.06, -0.08, 0.0])
+    boats.advance(0.12, 0.04)
+    # As fast as they came together before the force began.
+    assert (boats.get("touches"), boats.get("impact_speed")) == (2, pytest.approx(0.5))

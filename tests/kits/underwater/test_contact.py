@@ -174,3 +174,14 @@ def test_far_from_everything_nothing_is_touched():
     contact = started(Contact, seabed_depth=500.0)
     contact.advance(0.0, 0.1)
     assert (contact.get("touches"), contact.get("impact_speed")) == (0, 0.0)
+
+
+def test_over_a_step_the_force_is_that_of_its_middle():
+    law = {"stiffness": 700.0, "damping": 0.3, "seabed_depth": 5.0, "friction": 0.0}
+    box = {"box_size": [0.0, 0.0, 0.0], "radius": 0.5}  # eight corners in one place
+    ball = started(Contact, **law, **box, position=[1.0, 2.0, 4.6], velocity=[0.3, 0.2, 1.5])
+    assert ball.get("penetration") == pytest.approx(0.1)
+    assert ball.get("normal_force") == pytest.approx(8 * 700 * 0.1 * 1.45)
+    ball.advance(0.0, 0.04)
+    assert ball.get("normal_force") == pytest.approx(8 * 700 * (0.1 + 0.02 * 1.5) * 1.45)
+    assert (ball.get("touches"), ball.get("impact_speed")) == (1, pytest.approx(1.5))
