@@ -7,9 +7,7 @@ from pathlib import Path
 import pytest
 
 from seatrial import Simulation
-from seatrial.cli.making.new import KINDS
 from seatrial.cli.making.templates import texts, write
-from seatrial.system.profile.profile import load_profile
 
 from .test_assembly import parameters
 
@@ -29,14 +27,6 @@ def made(request: pytest.FixtureRequest, tmp_path: Path, monkeypatch: pytest.Mon
     for kind in (request.param, f"ardupilot/{request.param}"):
         write(texts("boat", kind), "", [("", "")])
     return str(request.param)
-
-
-@pytest.mark.parametrize("made", KINDS, indirect=True)
-def test_no_channel_of_an_actuator_is_left_to_the_firmwares_own_function(made: str) -> None:
-    """Rover's own functions are steering on channel 1 and the throttle on channel 3."""
-    values = parameters("boat")
-    for actuator in load_profile("boat").file.actuators.values():
-        assert f"SERVO{actuator.channel}_FUNCTION" in values
 
 
 @pytest.mark.slow
