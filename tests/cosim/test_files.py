@@ -105,6 +105,7 @@ def test_a_path_never_falls_back_to_a_shipped_file(here: Path) -> None:
         ("harness/rigs", "zzz", r"\(known: .*landing, .*miner"),
         ("harness/rigs", "", r"unknown rig ''"),
         ("harness/rigs", "zzz", r"or give a path ending in \.toml$"),
+        ("harness/rigs", "ardupilot/mine", r"; 'seatrial new ardupilot mine --like KIND'"),
     ],
 )
 def test_unknown_names_have_near_misses_among_both_folders(kind, name, message, write) -> None:

@@ -20,7 +20,7 @@ import pytest
 from pymavlink import mavutil
 
 from seatrial.trial.records.run_folder import Run, load_run
-from tests.command import SEATRIAL, seatrial
+from tests.command import SEATRIAL
 
 from .test_dronecan_multicast import ROOT, alone, can_be_alone
 
@@ -102,7 +102,7 @@ ROUND = {
 }
 
 
-def rounded(vehicle: str, firmware: str, out: Path, *options: str, cwd: Path = ROOT) -> Path:
+def rounded(vehicle: str, firmware: str, out: Path, *options: str) -> Path:
     """Send a vehicle round its square, where it comes back, and return the run's folder."""
     command = [
         SEATRIAL, "run", "square", "--vehicle", vehicle,
@@ -110,7 +110,7 @@ def rounded(vehicle: str, firmware: str, out: Path, *options: str, cwd: Path = R
         "--engine", "direct", "--set", f"autopilot.sitl.ardupilot.speedup={SPEEDUP}", *options,
     ]  # fmt: skip
     quoted = subprocess.list2cmdline(list(map(str, command)))
-    done = subprocess.run(alone(quoted), cwd=cwd, capture_output=True, text=True, timeout=1500)
+    done = subprocess.run(alone(quoted), cwd=ROOT, capture_output=True, text=True, timeout=1500)
     assert done.returncode == 0, done.stdout + done.stderr
     return out
 
@@ -121,18 +121,6 @@ def test_the_trial_square(vehicle: str, tmp_path: Path) -> None:
     run = load_run(rounded(vehicle, firmware, tmp_path / "run", *options))
     assert run.manifest["status"] == "complete"
     assert run.time[-1] < at_most
-
-
-@pytest.mark.parametrize(
-    ("like", "firmware", "options"),
-    [("usv", "rover", ()), ("rov", "sub", ("--choose", "step=2.5 ms"))],
-)
-def test_a_new_vehicle_goes_round_too(
-    like: str, firmware: str, options: tuple[str, ...], tmp_path: Path
-) -> None:
-    done = seatrial("new", "vehicle", "my-own", "--like", like, cwd=tmp_path)
-    assert done.returncode == 0, done.stderr
-    rounded("my-own", firmware, tmp_path / "run", *options, cwd=tmp_path)
 
 
 @pytest.mark.skipif(not Path(FOLDER, "arducopter").is_file(), reason="no arducopter there")

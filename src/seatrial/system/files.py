@@ -17,6 +17,8 @@ from ..kits import kits
 from ..shipped import available, provided_folders, provided_place, shipped_folder
 
 Model = TypeVar("Model", bound=BaseModel)
+_TEMPLATES = Path(__file__).parents[1] / "templates"
+"""A folder per command of `seatrial new` that takes a vehicle."""
 
 
 class FileModel(BaseModel):
@@ -75,11 +77,12 @@ def find_place(kind: str, name: str, relative_to: Path | None = None) -> Place:
     if (provided := provided_place(kind, name)) is not None:
         return provided
     what = kind.rpartition("/")[2].rstrip("s") if "/" in kind else kind.rstrip("s")
-    inner, slash, _ = name.rpartition("/")
+    inner, slash, base = name.rpartition("/")
     known = [f"{inner}{slash}{each}" for each in available(f"{kind}{slash}{inner}")]
-    raise InputError(
-        unknown(what, name, known) + "; or give a path ending in .toml" + kits().hint()
-    )
+    said = unknown(what, name, known) + "; or give a path ending in .toml"
+    if inner and (_TEMPLATES / inner).is_dir():
+        said += f"; 'seatrial new {inner} {base} --like KIND' writes one"
+    raise InputError(said + kits().hint())
 
 
 def _near(kind: str, name: str, naming: Path | None) -> Place | None:

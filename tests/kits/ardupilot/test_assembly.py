@@ -185,6 +185,20 @@ def test_a_vehicle_of_ones_own_takes_its_pulses(
     assert row[f"vehicle.hull.{moved}"] / least > 1.0
 
 
+@pytest.mark.slow
+def test_the_auv_stays_at_the_surface_under_a_firmware_that_cannot_dive(
+    program: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Amidships, its stern planes let it dive by 8 cm/s at 1.6 m/s."""
+    monkeypatch.chdir(program.parent)
+    for kind in ("auv", "ardupilot/auv"):
+        write(texts("mine", kind), "", [("", "")])
+    settings = ("--set", "stop=20 s", "--set", "autopilot.mooring.stiffness=0")
+    row = last_row(flown("mine", program, "run", "--engine", "direct", "--no-report", *settings))
+    assert row["vehicle.hull.velocity.u"] > 0.5
+    assert row["vehicle.hull.position.z"] < 0.2
+
+
 @pytest.mark.parametrize("vehicle", sorted(CHOICES))
 def test_parameter_files_have_the_pulses_of_the_profile(vehicle: str) -> None:
     values = parameters(vehicle)
