@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 from seatrial.trial.logs.channels import Log, channel
 from seatrial.trial.logs.formats import Format
@@ -23,16 +24,37 @@ _OF_CRAFT = {
 
 
 def _read(path: Path, _: Column | None) -> Log:
-    """Return the record of a run: the numbers, in their units. Raises InputError as `load_run`."""
+    """Return the record of a run: the numbers, in their units, of a played log where it has them.
+
+    Raises InputError as `load_run`.
+    """
     run = load_run(path)
     rows = np.arange(2, len(run.time) + 2)
     numbers = {name: values for name, values in run.signals.items() if not isinstance(values, list)}
-    channels = {
-        name: channel(name, run.units[name], run.time, values, rows)
-        for name, values in numbers.items()
-    }
+    channels = {}
+    for name, values in numbers.items():
+        known = known_rows(run, name)
+        time, at = (run.time, rows) if known.all() else (run.time[known], rows[known])
+        if len(time):
+            values = values if known.all() else np.asarray(values)[known]
+            channels[name] = channel(name, run.units[name], time, values, at)
+    table = all(each.time is run.time for each in channels.values())
     served = {**of_craft(channels), **_said(run, channels)}
-    return Log(path / SIGNALS, channels, served, notes=run.notes, row="line", table=True)
+    return Log(path / SIGNALS, channels, served, notes=run.notes, row="line", table=table)
+
+
+def known_rows(run: Run, name: str) -> NDArray[np.bool_]:
+    """Return the rows (n,) at which the value of a signal is known, all without a switch."""
+    switch = next((each for each in switches(name) if each in run.signals), None)
+    if switch is None:
+        return np.ones(len(run.time), np.bool_)
+    return np.asarray(run.signals[switch], np.bool_)
+
+
+def switches(name: str) -> tuple[str, str]:
+    """Return the signals that may say where that of an imported, or a played, log is known."""
+    component, _, port = name.partition(".")
+    return f"{component}.known.{port}", f"{name}_valid"
 
 
 def _said(run: Run, names: Iterable[str]) -> dict[str, list[str]]:

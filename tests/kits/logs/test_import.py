@@ -149,3 +149,23 @@ def test_nothing_in_common_is_said(turn, tmp_path):
     done = seatrial("compare", "run", "other.csv", "--match", "log.HDG=x:m", cwd=turn)
     assert done.returncode == 2
     assert "unit 'm' cannot be converted to 'deg'" in done.stderr
+
+
+def test_what_is_not_known_is_not_compared(tmp_path):
+    """Fixes from 0.4 s on, a gap of 20 s in them, rows each half second: the log is the run."""
+    writers.write_candump(tmp_path / "all.log")
+    lines = (tmp_path / "all.log").read_text().splitlines()
+    begun = float(lines[0].split()[0].strip("()"))
+    fixes = [line for line in lines if "#" in line and " 09F801" in line]
+    gone = {line for line in fixes if 100.0 < float(line.split()[0].strip("()")) - begun < 120.0}
+    (tmp_path / "boat.log").write_text("".join(f"{each}\n" for each in lines if each not in gone))
+    done = seatrial("import", "boat.log", "--out", "boat", cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    done = seatrial("compare", "boat", "boat.log", "--json", cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    found = {each["signal"]: each for each in json.loads(done.stdout)["result"]["signals"]}
+    for axis in "xy":
+        assert found[f"log.position.{axis}"]["rms"] < 0.02
+    done = seatrial("trials", "figures", "boat", "--manoeuvre", "turning-circle", cwd=tmp_path)
+    assert done.returncode == 2
+    assert "a gap from" in done.stderr

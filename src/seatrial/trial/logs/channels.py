@@ -21,7 +21,7 @@ _NAMED = 10
 """Kinds of entries that a note names."""
 
 
-def not_read(kinds: Counter[Any], noun: str) -> list[str]:
+def counted(kinds: Counter[Any], what: str) -> list[str]:
     """Return the note on kinds of entries that no channel has, with their numbers; none without.
 
     The ten most frequent ones are named.
@@ -32,7 +32,7 @@ def not_read(kinds: Counter[Any], noun: str) -> list[str]:
     named = [f"{kind} ({count})" for kind, count in ordered[:_NAMED]]
     more = len(ordered) - len(named)
     named += [f"{more} others ({sum(count for _, count in ordered[_NAMED:])})"] if more else []
-    return [f"{noun} that are not read: {', '.join(named)}"]
+    return [f"{what}: {', '.join(named)}"]
 
 
 @dataclass(frozen=True, eq=False)

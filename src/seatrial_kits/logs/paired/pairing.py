@@ -12,7 +12,7 @@ from seatrial.trial.logs.channels import Array, Log
 from seatrial.trial.logs.quantities import Column, defaults
 from seatrial.trial.records.run_folder import Run
 
-from ..run_log import of_craft
+from ..run_log import known_rows, of_craft, switches
 from .common_time import GAP
 from .resampling import Trace, served, trace, unwrapped, usual_time
 
@@ -46,10 +46,12 @@ def read_matches(texts: Sequence[str], option: str) -> list[Match]:
 
 
 def compared_signals(names: Sequence[str], log: Log, matches: Sequence[Match]) -> set[str] | None:
-    """Return the signals that `pairs` looks at, of the ``names`` of a run's; None for all."""
+    """Return the signals that `pairs` looks at, with their switches; None for all ``names``."""
     wanted = {each.signal for each in matches} or {name for name in names if name in log.channels}
     wanted = wanted or {name for found in motion_signals(names).values() for name in found}
-    return wanted if wanted <= {*names} else None  # near misses are looked for among all
+    if not wanted <= {*names}:
+        return None  # near misses are looked for among all
+    return wanted.union(*map(switches, wanted)) & {*names}
 
 
 def pairs(
@@ -150,10 +152,18 @@ def _signal(run: Run, name: str) -> Trace:
 
 
 def run_trace(run: Run, name: str) -> Trace:
-    """Return a signal of numbers of a run as a trace."""
-    unit = run.units[name]
-    time, values = run.time, unwrapped(np.asarray(run.signals[name], np.float64), unit)
+    """Return a signal of numbers of a run as a trace, where it is known.
+
+    Raises InputError for one that is never known.
+    """
+    unit, known = run.units[name], known_rows(run, name)
+    time, values = run.time, np.asarray(run.signals[name], np.float64)
     usual = usual_time(time, np.inf)
+    if not known.all():
+        time, values = time[known], values[known]
+        if not len(time):
+            raise InputError(f"{run.folder}: {name} is not known at any time")
+    values = unwrapped(values, unit)
     if not np.all(time[1:] > time[:-1]):
         kept = np.append(np.diff(time) > 0.0, True)[: len(time)]
         time, values = time[kept], values[kept]

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from seatrial.errors import InputError
-from seatrial.trial.logs.channels import Array, Log, Samples, not_read
+from seatrial.trial.logs.channels import Array, Log, Samples, counted
 from seatrial.trial.logs.clock_times import date_of, of_day, parsed_time, past_midnight
 from seatrial.trial.logs.reading_progress import open_text
 
@@ -89,7 +89,7 @@ def read(path: Path) -> Log:
     skipped: Counter[str] = Counter()
     others: Counter[str] = Counter()
     lines = _lines(path, skipped, others)
-    unread = not_read(others, "sentences")
+    unread = counted(others, "sentences that are not read")
     if not lines:
         there = "".join(f"; {note}" for note in unread)
         raise InputError(

@@ -111,6 +111,44 @@ def test_rudder_attitude_and_motion(read):
         assert values[name] == pytest.approx(value, abs=1e-5), name
 
 
+def test_engines_navigation_and_wind_as_displays_show_them(read):
+    """Winds are those that the message has: where they come from."""
+    found = read(
+        line(0.9, 127258, struct.pack("<BBHhH", 0xFF, 0xF4, 0xFFFF, 500, 0xFFFF)),
+        line(1.0, 127488, struct.pack("<BHHbH", 1, 7200, 0xFFFF, 0x7F, 0xFFFF)),
+        line(1.0, 130306, struct.pack("<BHHBH", 0, 700, 15000, 0xF8 | 2, 0xFFFF)),
+        line(1.0, 130306, struct.pack("<BHHBH", 0, 800, 60000, 0xF8 | 4, 0xFFFF)),
+        line(1.0, 130306, struct.pack("<BHHBH", 0, 900, 20000, 0xF8 | 1, 0xFFFF)),
+        line(1.0, 129283, struct.pack("<BBiH", 0, 0x3F, -1250, 0xFFFF)),
+        line(1.0, 127251, struct.pack("<Bih", 0, 0x7FFFFFFF, -1)),
+    )
+    values = {name: each.values[0] for name, each in found.channels.items()}
+    expected = {"127488.engine_speed 1": 7200 * 0.25 * math.tau / 60, "130306.wind_angle": 1.5,
+                "130306.wind_speed": 7.0, "130306.water_wind_angle": 6.0,
+                "130306.wind_direction": 2.05, "129283.cross_track": -12.5}  # fmt: skip
+    for name, value in expected.items():
+        assert values[name] == pytest.approx(value, abs=1e-5), name
+    assert found.notes == ("messages without a value, by PGN: 127251 (1)",)
+
+
+def test_fuel_of_an_engine(read):
+    """The first bytes of 127489 in three of four frames of a fast packet, and then the fourth."""
+    content = struct.pack("<BHHHhhIHH", 0, 4000, 0xFFFF, 36315, 1375, 155, 0, 0xFFFF, 0xFFFF)
+    content = content.ljust(26, b"\xff")
+    parts = [bytes([26]) + content[:6], *(content[k : k + 7] for k in range(6, 26, 7))]
+    lines = [line(1.0, 127489, bytes([n]) + each) for n, each in enumerate(parts)]
+    values = {name: each.values[0] for name, each in read(*lines).channels.items()}
+    assert values["127489.engine_fuel_rate 0"] == pytest.approx(15.5e-3 / 3600.0)
+    assert values["127489.engine_temperature 0"] == pytest.approx(363.15)
+    assert values["127489.engine_oil_pressure 0"] == pytest.approx(400e3)
+    assert values["127489.engine_voltage 0"] == pytest.approx(13.75)
+
+
+def test_frames_without_times_are_no_log(read):
+    with pytest.raises(InputError, match=r"line 1: the frame has no time, .* with -L or -t a"):
+        read("can0  09F11223   [8]  FF 10 3B FF 7F CE F5 FC")
+
+
 def test_what_candump_prints(read):
     data = heading(1.0)
     found = read(
