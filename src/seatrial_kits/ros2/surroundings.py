@@ -45,7 +45,8 @@ class Traffic:
             yield "ais_targets", self._targets(here)
 
     def _take(self, line: bytes, here: Here) -> None:
-        found, own = (self._read and self._read.take(line)) or ({}, True)
+        taken: tuple[Fields, bool] | None = self._read and self._read.take(line)
+        found, own = taken or ({}, True)
         lat, lon = found.get("lat"), found.get("lon")
         if own or lat is None or lon is None or abs(lat) > 90.0 or abs(lon) > 180.0:
             return
