@@ -59,10 +59,10 @@ test-pages: $(INSTALLED)
 	$(PYTEST) $(HANGS) -m "not long" tests/test_docs.py tests/test_readme.py tests/test_wheel.py
 
 test-slow: $(INSTALLED) $(NODE_TOOLS)
-	$(PYTEST) -m "(slow or interop) and not long"
+	$(PYTEST) --timeout 600 -m "(slow or interop) and not long"
 
 test-long: $(INSTALLED) $(NODE_TOOLS)
-	$(PYTEST) -m long
+	$(PYTEST) --timeout 3600 -m long
 
 # Each vehicle in each sea with each fault under ArduPilot's own programs, which SEATRIAL_ARDUPILOT
 # names the folder of: an hour, once per release. The table goes into docs/kits/ardupilot/autopilots.md.
