@@ -1,4 +1,4 @@
-"""The catalogue: every fault by its name, on what it acts, and the settings that it takes."""
+"""The catalogue: each fault by its name, with its targets and its settings."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ from typing import Any, Literal
 from ...plugins import Registry
 
 On = Literal["signal", "stream", "device", "measurement", "bus", "component"]
-"""An output, input or parameter; a text port of chunks; a device of ours; what a sensor of ours
-measures; a node of our CAN bus; a component of any kind."""
+"""An output, input or parameter; a text port of chunks; a device of ours; a measurement of a sensor
+of ours; a node of our CAN bus; a component of any kind."""
 
 Measure = Literal["value", "rate", "duration", "number", "probability", "coefficients", "range"]
 """value: in the unit of the port, or one for each of its axes; rate: that per second; coefficients:
@@ -24,21 +24,21 @@ class Setting:
     measure: Measure
     meaning: str
     default: float | None = None
-    """A setting without it must be written."""
+    """A setting without a default is required."""
 
 
 @dataclass(frozen=True)
 class Kind:
-    """A fault of the catalogue: y is what its readers get in the place of x."""
+    """A fault of the catalogue: its readers get y in place of x."""
 
     title: str
     on: tuple[On, ...]
     equation: str
     settings: dict[str, Setting]
     grows: bool = False
-    """Whether it takes ``grows_over``: its share s rises from 0 to 1 in that time."""
+    """Whether the fault takes ``grows_over``, in which its share s rises from 0 to 1."""
     make: Callable[..., Any] | None = None
-    """Of a kit's fault of signals: its operator, of settings, index of the scalar, and numbers.
+    """Operator of a kit's fault of signals, of settings, index of the scalar, and random numbers.
 
     Called as ``make(settings, index, draw)``, with `sim.fault_settings.Settings` and
     `operators.Draw`; returns an `operators.Operator`.
@@ -198,7 +198,7 @@ STREAMS = {
 
 DEVICES = {
     "off": Kind(
-        "a device without power; a node that has left the bus",
+        "a device that is switched off; a node that has left the bus",
         ("device", "bus"),
         "`valid` is false and values stay; a thruster stops; a shaft keeps its position",
         {},
@@ -206,13 +206,15 @@ DEVICES = {
     "wrong": Kind(
         "a damaged device",
         ("device",),
-        "a sensor is 10 % of its span off; a thruster halves its thrust; a shaft is 10 % off",
+        "a sensor reads 10 % of its span too high; a thruster gives half of its thrust; "
+        "a shaft is 10 % of its range off",
         {},
     ),
     "slow": Kind(
         "a slow device",
         ("device",),
-        "a sensor gives each tenth measurement; an actuator has 10 times its lag, or 1/10 rate",
+        "a sensor gives each tenth measurement; an actuator has ten times its lag, "
+        "or a tenth of its rate",
         {},
     ),
     "delayed": Kind(

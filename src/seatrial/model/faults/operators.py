@@ -1,8 +1,8 @@
-"""Faults of signals: what becomes of one scalar, as a function of its value and of time.
+"""Faults of signals: the value y of one scalar as a function of its value x and of time.
 
-An operator has no state of its own. Where it depends on the past, `Operator.first` and
-`Operator.after` give what it remembers, as plain data that never changes: whoever runs it keeps
-that, so that a step can be repeated.
+An operator has no state of its own. If y depends on the past, `Operator.first` and `Operator.after`
+return a memory, plain data that never changes. The caller keeps the memory, so that a step can be
+repeated.
 """
 
 from __future__ import annotations
@@ -30,18 +30,18 @@ class Moment:
     """Simulated time."""
     begun_ns: int
     grows_ns: int = 0
-    """In how long it grows, from its begin."""
+    """Duration of the growth, from the begin."""
     ended_ns: int | None = None
-    """When it ended; None: it acts."""
+    """Time of the end; None while the fault acts."""
 
     @property
     def since_ns(self) -> int:
-        """Time since it began."""
+        """Time since the begin."""
         return self.t_ns - self.begun_ns
 
     @property
     def since(self) -> float:
-        """Time since it began, s."""
+        """Time since the begin, s."""
         return self.since_ns / NS
 
     @property
@@ -50,7 +50,7 @@ class Moment:
         return self.share_at(self.t_ns)
 
     def share_at(self, t_ns: int) -> float:
-        """Return how far it had grown at a time, 0 before it began and after it ended."""
+        """Return the share at a time, 0 before the begin and after the end."""
         if t_ns < self.begun_ns or (self.ended_ns is not None and t_ns >= self.ended_ns):
             return 0.0
         return min(1.0, (t_ns - self.begun_ns) / self.grows_ns) if self.grows_ns else 1.0
@@ -70,11 +70,11 @@ class Operator(ABC):
     """Value y that a fault makes of the value x of one signal at a moment."""
 
     def first(self, x: Any, moment: Moment) -> Any:
-        """Return what is remembered as the fault begins with the value ``x``."""
+        """Return the memory as the fault begins with the value ``x``."""
         return None
 
     def after(self, memory: Any, x: Any, moment: Moment, h_ns: int) -> Any:
-        """Return what is remembered ``h_ns`` later, ``x`` being the value at ``moment``."""
+        """Return the memory ``h_ns`` later, ``x`` being the value at ``moment``."""
         return memory
 
     @abstractmethod
@@ -84,7 +84,7 @@ class Operator(ABC):
 
 @dataclass(frozen=True)
 class Fixed(Operator):
-    """y = x + s (value - x); of what is no number, y = value."""
+    """y = x + s (value - x); y = value for texts."""
 
     level: Any
 
@@ -222,7 +222,7 @@ class Stuck(Operator):
 
 @dataclass(frozen=True)
 class Delay(Operator):
-    """y(t) = x(t - s time), and x(at) until that has come."""
+    """y(t) = x(max(at, t - s time))."""
 
     time_ns: int
 
@@ -286,7 +286,7 @@ class Slow(Operator):
 
 @dataclass(frozen=True)
 class Runaway(Operator):
-    """y goes from x(at) to the value at the rate, whatever x is, and stays there."""
+    """y goes from x(at) to the value at the rate, for any x, and stays there."""
 
     level: float
     rate: float
@@ -319,11 +319,11 @@ class Wrapped(Operator):
     high: float
 
     def first(self, x: Any, moment: Moment) -> Any:
-        """Return what the other remembers."""
+        """Return the memory of the other operator."""
         return self.inner.first(x, moment)
 
     def after(self, memory: Any, x: Any, moment: Moment, h_ns: int) -> Any:
-        """Return what the other remembers."""
+        """Return the memory of the other operator."""
         return self.inner.after(memory, x, moment, h_ns)
 
     def value(self, memory: Any, x: Any, moment: Moment) -> Any:
