@@ -8,7 +8,6 @@ from seatrial.physics.craft.kinematics import rotation, to_ned
 from seatrial.physics.craft.planar import (
     horizontal_rotation,
     kinematics,
-    motion_outputs,
     planar_coriolis,
 )
 
@@ -33,24 +32,6 @@ def test_kinematics_of_a_heeled_craft():
 def test_kinematics_of_a_level_craft_has_three_elements():
     slope = numbers(kinematics(ca.DM([7.0, 8.0, np.pi / 2]), ca.DM([1.5, -0.3, 0.1])))
     np.testing.assert_allclose(slope, [0.3, 1.5, 0.1], atol=1e-15)
-
-
-def test_three_and_four_degrees_of_freedom_publish_the_same_motion():
-    three = motion_outputs(ca.DM([1, 2, 3]), ca.DM([4, 5, 6]), ca.DM([7, 8, 9]))
-    four = motion_outputs(ca.DM([1, 2, 0, 3]), ca.DM([4, 5, 0, 6]), ca.DM([7, 8, 0, 9]))
-    assert {n: numbers(v).tolist() for n, v in three.items()} == {
-        n: numbers(v).tolist() for n, v in four.items()
-    }
-    assert numbers(three["position"]).tolist() == [1, 2, 0]
-    assert numbers(three["attitude"]).tolist() == [0, 0, 3]
-    assert numbers(three["velocity"]).tolist() == [4, 5, 0]
-    assert numbers(three["rates"]).tolist() == [0, 0, 6]
-
-
-def test_acceleration_on_a_circle_points_to_its_centre():
-    speed, rate = 2.0, 0.5  # turning to starboard
-    motion = motion_outputs(ca.DM([0, 0, 1.0]), ca.DM([speed, 0, rate]), ca.DM([0, 0, 0]))
-    np.testing.assert_allclose(numbers(motion["acceleration"]), [0, speed * rate, 0], atol=1e-15)
 
 
 def test_coriolis_force_does_no_work_and_is_kirchhoffs():

@@ -226,3 +226,17 @@ def test_a_fix_comes_a_time_after_surfacing(surfacing, samples):
     rows = [{"position": (0.0, 0.0, 1.0 if k < 3 else -1.0)} for k in range(12)]
     found = over(gnss, ["valid"], 0.2, rows)[:, 0]
     np.testing.assert_array_equal(found, np.arange(12) >= 3 + samples)
+
+
+@pytest.mark.parametrize("name", ["gyro", "accelerometer", "roll_pitch"])
+def test_a_fault_of_one_output_leaves_the_others(name):
+    motion = {"rates": (0.1, 0.2, 0.3), "attitude": (0.2, -0.1, 1.0), "period": 0.1}
+    values = "0.5,0.25" if name == "roll_pitch" else "0.5,0.25,0.125"
+    plain, faulty = ideal(Imu, **motion), ideal(Imu, **motion)
+    faulty.set("fault", f"bias of={name} value={values} at=0.0")
+    for unit in (plain, faulty):
+        unit.advance(0.0, 0.1)
+    for each in ("gyro", "accelerometer", "roll_pitch"):
+        off = np.subtract(faulty.get(each), plain.get(each))
+        expected = np.array([0.5, 0.25, 0.125][: len(off)]) * (each == name)
+        np.testing.assert_allclose(off, expected, atol=1e-12, err_msg=each)

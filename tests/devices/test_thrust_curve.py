@@ -4,7 +4,10 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
+from seatrial.devices.actuators.polynomial_thruster import PolynomialThruster
 from seatrial.physics.thrust_curve import T200_BENCHMARK, command_of
+
+from .running import started
 
 MOST_INSIDE = (3.0, -1.0 / 0.8**2, 0.0, 0.0, 0.0)  # rises up to 0.8
 MOST_OUTSIDE = (3.0, -1.0 / 1.05**2, 0.0, 0.0, 0.0)
@@ -29,3 +32,14 @@ def test_a_command_gives_the_thrust_asked_for(coefficients):
     assert command_of(coefficients, beyond) == pytest.approx(most, abs=1e-5)
     assert command_of(coefficients, -beyond) == pytest.approx(-most, abs=1e-5)
     assert command_of(coefficients, 0.0) == 0.0
+
+
+def test_a_thruster_knows_its_curve_both_ways():
+    curve = (8.0, 150.0, -310.0, 290.0, -99.0)
+    made = started(PolynomialThruster, thrust_curve=curve)
+    for V in (-1.4, -1.0, -0.6, 0.0, 0.3, 0.9, 2.0):
+        held = min(max(V, -1.0), 1.0)
+        assert made.thrust_of(V) == pytest.approx(thrust(curve, held))
+        assert made.command_of(thrust(curve, held)) == pytest.approx(held, abs=1e-5)
+    assert made.rises()
+    assert not started(PolynomialThruster, thrust_curve=(-1.0, 2.0, 0.0, 0.0, 0.0)).rises()

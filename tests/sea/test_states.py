@@ -4,10 +4,13 @@ import math
 
 import numpy as np
 import pytest
+from scipy.interpolate import RegularGridInterpolator
 
 from seatrial.errors import InputError
+from seatrial.physics.craft.surrounded import _cubic
 from seatrial.physics.sea import lattice
 from seatrial.physics.sea.currents import CurrentState
+from seatrial.physics.sea.loads import WaveLoads, tabulated
 from seatrial.physics.sea.orbital import Orbital
 from seatrial.physics.sea.quadrature import integrals
 from seatrial.physics.sea.seastate import SeaState
@@ -202,3 +205,57 @@ def test_bands_of_two_kinds_and_streams_are_drawn_apart():
     correlation = np.corrcoef(draws) - np.eye(4)
     assert np.abs(correlation).max() < 0.5  # 40 draws: 3 deviations
     np.testing.assert_array_equal(lattice.draws("sea", 1, 0, range(5, 9)), draws[0][25:29])
+
+
+# ------------------------------------------------------------------ loads between table's points
+
+
+def linear(omega, k, chi):
+    """Return a response that is linear in frequency, of six loads that differ."""
+    size = np.arange(1.0, 7.0)[:, None] * (1 + 0.3 * omega)
+    return size * np.exp(1j * (np.arange(6.0)[:, None] + chi))
+
+
+def mean_forces(omega, chi):
+    return np.stack([omega * np.cos(chi), 2 * omega * np.sin(chi), 3 + 0 * omega])
+
+
+@pytest.mark.parametrize("heading", [0.3, 2.9, -1.234, 7.0])
+@pytest.mark.parametrize("drift", [None, mean_forces])
+def test_loads_between_two_headings_are_between_those_there(heading, drift):
+    t, place, step = 3.3, (2.0, -5.0), math.tau / 180
+    found = WaveLoads(CROSSING, linear, drift).at(t, *place, heading)
+    phasors = CROSSING.phasors(t, np.array(place))
+    cell, share = divmod(heading % math.tau / step, 1.0)
+    expected = np.zeros(6)
+    for weight, number in ((1 - share, cell), (share, cell + 1)):
+        chi = CROSSING.direction - number * step
+        expected += weight * (linear(CROSSING.omega, None, chi) @ phasors).real
+        if drift:
+            slow = np.conj(phasors.sum()) * (drift(CROSSING.omega, chi) @ phasors)
+            expected[[0, 1, 5]] += weight * slow.real
+    np.testing.assert_allclose(found, expected, rtol=1e-9)
+
+
+@pytest.mark.parametrize(("w", "chi"), [(1.3, 0.5), (2.9, 2.2), (0.2, 5.9), (9.0, -0.3)])
+def test_a_table_is_linear_in_frequency_and_direction(w, chi):
+    draw = np.random.default_rng(5)
+    omega, angles = np.array([1.0, 1.6, 3.0]), np.array([0.2, 1.1, 2.5, 4.0, 5.5])
+    forces = draw.normal(size=(6, 3, 5)) + 1j * draw.normal(size=(6, 3, 5))
+    found = tabulated(omega, angles, forces)(np.array([w]), np.array([w**2 / 9.81]), chi)[:, 0]
+    round_angles = np.append(angles, 0.2 + math.tau)
+    round_forces = np.concatenate([forces, forces[:, :, :1]], 2)
+    grid = RegularGridInterpolator((omega, round_angles), np.moveaxis(round_forces, 0, 2))
+    at = min(max(w, 1.0), 3.0), 0.2 + (chi - 0.2) % math.tau
+    np.testing.assert_allclose(found, np.ravel(grid(at)), rtol=1e-9)
+
+
+@pytest.mark.parametrize(("steps", "count"), [(1, 1), (1, 3), (5, 2)])
+def test_surroundings_between_evaluations_are_the_cubic_through_four(steps, count):
+    shares = _cubic(steps, count)
+    assert shares.shape == (steps, 2 * count + 1, 4)
+    polynomial = np.polynomial.Polynomial([0.7, -1.3, 0.4, 2.1])
+    known = polynomial(np.array([-2.0, -1.0, 0.0, 1.0]))
+    for step in range(steps):
+        at = (step + np.linspace(0, 1, 2 * count + 1)) / steps
+        np.testing.assert_allclose(shares[step] @ known, polynomial(at), atol=1e-12)

@@ -114,3 +114,25 @@ def test_a_body_that_is_bow_heavy_and_rises_by_itself_is_held_at_its_depth(buoya
     assert depths[-200:] == pytest.approx(10.0, abs=1e-3)
     assert depths.max() < 10.5
     assert depths[600] > 9.0  # after half a minute
+
+
+def test_the_pitch_for_a_depth_is_its_recursion():
+    draw, T, most, learnt, held_back = np.random.default_rng(6), 0.2, 0.3, 0.0, 0
+    depths, speeds = 10.0 + draw.normal(0, 2.0, 60), draw.uniform(-2.5, 2.5, 60)
+    held = hold(
+        depth_frequency=0.17, depth_integral_pole=0.04, least_speed=0.6, pitch_limit=most,
+        period=T, depth=depths[0], depth_wanted=10.0,
+    )  # fmt: skip
+    for k, (depth, speed) in enumerate(zip(depths, speeds, strict=True)):
+        held.set("depth", depth)
+        held.set("speed", speed)
+        stiff = 0.21 / max(abs(speed), 0.6) * (depth - 10.0)
+        clipped = min(max(stiff, -most), most)
+        ordered = min(max(clipped + learnt, -most), most)
+        assert held.get("pitch_ordered") == pytest.approx(ordered, abs=1e-12)
+        rate = 0.17 * 0.04 / 0.21
+        inside = stiff if stiff == clipped else 0.0
+        learnt += T * rate * (inside + ordered - clipped - learnt)
+        held_back += stiff != clipped
+        held.advance(T * k, T)
+    assert 5 < held_back < 55

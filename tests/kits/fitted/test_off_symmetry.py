@@ -15,7 +15,6 @@ from seatrial.physics.craft.six_dof import six_dof_motion
 from seatrial.physics.craft.terms.context import Context
 from seatrial.physics.craft.through_water import flow_outputs
 from seatrial.physics.craft.wave_hull import WaveHull
-from seatrial.physics.sea.strips import Strips
 from seatrial_kits.fitted.parts.flow import through_water
 from tests.craft.numerically import numbers, pose
 from tests.sea.references import content, table
@@ -115,29 +114,6 @@ def test_momentum_of_body_and_water_is_conserved(seed):
 
 
 @pytest.mark.parametrize("seed", SEEDS)
-def test_a_sphere_meets_the_shear_by_its_velocity_over_depth(seed):
-    # (m + A) v' = rho V a + A (a + s z') at any attitude and rates; s the shear, z' downwards.
-    draw = np.random.default_rng(seed)
-    attitude, R, nu = pose(draw)
-    shear, surging, rises = draw.normal(size=2), draw.normal(size=3), draw.normal(size=3)
-    m, A = 12.0, 7.0
-    acceleration, *_ = motion(
-        attitude,
-        nu,
-        mass=m,
-        added_mass=[A, A, A, 0, 0, 0],
-        buoyancy=m * G,
-        terms="coriolis",
-        water_velocity=rises,
-        water_acceleration=surging,
-        water_shear=shear,
-    )
-    met = surging + np.append(shear * (R @ nu[:3])[2], 0)
-    expected = (m * surging + A * met) / (m + A)
-    np.testing.assert_allclose(R @ acceleration, expected, rtol=1e-9, atol=1e-9)
-
-
-@pytest.mark.parametrize("seed", SEEDS)
 def test_parts_meet_the_water_at_their_own_depth(seed):
     draw = np.random.default_rng(seed)
     attitude, R, nu = pose(draw)
@@ -194,28 +170,6 @@ def test_propellers_push_by_the_speed_and_depth_at_their_place(seed):
 
 
 # ------------------------------------------------------------------ waves
-
-
-@pytest.mark.parametrize("chi", [0.4, 2.0, 3.9, 5.5])
-def test_moments_of_a_hull_elsewhere_are_those_of_its_force_there(chi):
-    # A hull moved by d meets the wave later by k . d, and its force has the lever d.
-    x = np.linspace(-0.9, 0.9, 7)
-    beam, one = 0.3 + 0.1 * x, np.ones_like(x)
-    shape = {"beam": beam, "area": 0.2 * beam, "draught": 0.2 * one + 0.05 * x}
-    water = {"a33": 9 * beam, "b33": 20 * beam, "a22": 5 * one, "b22": 3 * one}
-    shape |= {**water, "a42": 2 * one, "b42": one}
-    w = np.array([0.8, 2.0, 4.0])
-    k = w**2 / G
-    here = Strips(x, **shape).forces(w, k, chi)
-    ahead, starboard = 0.7, -0.4
-    there = Strips(x + ahead, **shape, hulls=(starboard,)).forces(w, k, chi)
-    both = Strips(x, **shape, hulls=(0.0, starboard)).forces(w, k, chi)
-    aside = Strips(x, **shape, hulls=(starboard,)).forces(w, k, chi)
-    later = np.exp(-1j * k * (ahead * math.cos(chi) + starboard * math.sin(chi)))
-    expected = here * later
-    expected[3:] += np.cross([ahead, starboard, 0.0], expected[:3], axis=0)
-    np.testing.assert_allclose(there, expected, rtol=1e-9, atol=1e-9)
-    np.testing.assert_allclose(both, here + aside, rtol=1e-12, atol=1e-9)
 
 
 @pytest.mark.parametrize("chi", [0.4, 2.0, 3.9, 5.5])

@@ -6,7 +6,7 @@ from importlib.resources import files
 import numpy as np
 import pytest
 
-from seatrial.physics.foils import sail_naca0015
+from seatrial.physics.foils import FoilTable, sail_naca0015
 from seatrial_kits.sailing.control.sail_search import best_setting, setting
 
 TABLE = sail_naca0015("verbatim", "table")
@@ -76,3 +76,22 @@ def test_a_searched_setting_gives_what_it_says():
 def test_dead_downwind_the_flap_is_5_degrees():
     """A search over all angles, cut off afterwards, would take 20: the boat is then slower."""
     assert best_setting(TABLE, 0.0, 0.0, math.pi / 2).flap == pytest.approx(5 * DEG)
+
+
+@pytest.mark.parametrize(
+    ("rows", "flap", "alpha"),
+    [
+        # Columns of the greatest drag, by flap; dead downwind drag is drive.
+        ({0: [18], 1: [25]}, 0, 90),
+        ({0: [25], 1: [18]}, 0, 125),
+        ({1: [20, 27], 2: [22]}, 5, 100),
+    ],
+)
+def test_of_equals_the_smallest_flap_then_the_smallest_alpha_is_taken(rows, flap, alpha):
+    drag = np.zeros((3, 37))
+    for row, columns in rows.items():
+        drag[row, columns] = 1.0
+    table = FoilTable(tuple(map(tuple, np.zeros((3, 37)))), tuple(map(tuple, drag)))
+    found = best_setting(table, 0.0, 0.0, math.pi / 2)
+    assert found.flap == pytest.approx(flap * DEG)
+    assert found.angle == pytest.approx((180 - alpha) * DEG)

@@ -108,3 +108,24 @@ def test_restored_state_goes_on_identically():
             component.advance((line.now + number * 10_000_000) / 1e9, STEP)
         for name in ("speed", "temperature", "tx", "voltage"):
             assert line.component.get(name) == other.get(name)
+
+
+def test_several_share_one_supply_and_tell_their_warmth_in_degrees():
+    settings = {"full_current": 12.0, "supply_voltage": 50.0, "line_resistance": 0.4}
+    warm = {"thermal_time": 0.5, "thermal_resistance": 0.03, "watchdog": 0.0}
+    line = Line(M5Thrusters, nodes="1 2 3", **settings, **warm)
+    line.component.set("water_temperature", 280.0)
+    powers = [0.9, -0.7, 0.4]
+    first = keep(line, powers, 0.1)
+    assert first.temperature == pytest.approx(288.15 - 273.15, abs=0.2)
+    health = keep(line, powers, 3.0, node=2)
+    currents = [12.0 * abs(power) ** 3 for power in powers]
+    volts = 50.0 - 0.4 * sum(currents)
+    assert line["voltage"] == pytest.approx(volts, rel=1e-4)
+    assert line["current"][:3] == pytest.approx(currents, rel=1e-4)
+    assert line["speed"][:3] == pytest.approx([2700.0, -2100.0, 1200.0], rel=1e-4)
+    assert line["thrust"][:3] == pytest.approx([0.81, -0.49, 0.16], rel=1e-4)
+    assert (health.rpm, health.current) == pytest.approx((-2100.0, currents[1]), rel=1e-3)
+    keep(line, powers, 2.0)
+    rest = [280.0 + 0.03 * volts * current for current in currents]
+    assert line["temperature"][:3] == pytest.approx(rest, abs=0.05)

@@ -12,7 +12,7 @@ from seatrial.trial.files.trial import load_trial
 from seatrial.trial.records.run_folder import load_run
 from seatrial.trial.running.run import run_trial
 from seatrial_kits.videoray.plan.motion import plan_motion
-from seatrial_kits.videoray.plan.page import settings, write_plan
+from seatrial_kits.videoray.plan.page import _commands, _track, settings, write_plan
 
 M11, M22, M33, D11, D22, D33, E, ARM = 8.44, 12.55, 0.133, 0.95, 5.87, 0.023, 46.7, 0.1
 """The variant physical of videoray-surface."""
@@ -127,3 +127,15 @@ def test_a_law_in_a_trial_has_the_motion_that_was_planned(tmp_path):
 def test_mistakes_are_named(arguments, named):
     with pytest.raises(InputError, match=named):
         plan_motion("videoray-surface", **({"yaw_rate": 0.0} | arguments))
+
+
+@pytest.mark.parametrize(("limit", "shown"), [(0.2, [0.2, -0.2]), (1.0, [])])
+def test_limits_are_drawn_where_they_do_not_flatten_the_commands(limit, shown):
+    plan = plan_motion("videoray-surface", 0.6, 0.1, duration=10.0, stop=12.0, limit=limit)
+    assert 0.02 < plan.peak < 0.1
+    commands, track = _commands(plan), _track(plan)
+    assert [shape["y0"] for shape in commands.layout.get("shapes", [])] == shown
+    for k, trace in enumerate(commands.data):
+        np.testing.assert_array_equal(trace["y"], plan.command[:, k])
+    np.testing.assert_array_equal(track.data[0]["x"], plan.track[:, 1])  # east to the right
+    np.testing.assert_array_equal(track.data[0]["y"], plan.track[:, 0])
