@@ -63,7 +63,7 @@ def compile_model(
     y = _stacked(f"{name}: outputs", other, outputs)
     rhs = ca.Function("rhs", [x.all, u.all, p.all], [ca.cse(dx)])
     h = ca.SX.sym("h")
-    stepped = _stepped(rhs, x.all, (u.all, u.all, u.all), p.all, h)
+    stepped = runge_kutta(rhs, x.all, (u.all, u.all, u.all), p.all, h)
     matrices = [ca.densify(ca.jacobian(f, v)) for f in (dx, y) for v in (x.all, u.all)]
     return Model(
         rhs=rhs,
@@ -113,10 +113,10 @@ def rk4_between(rhs: ca.Function) -> ca.Function:
     x, u, p = (ca.SX.sym(name, rhs.size1_in(i)) for i, name in enumerate("xup"))
     u0, u1 = (ca.SX.sym(name, rhs.size1_in(1)) for name in ("u0", "u1"))
     h = ca.SX.sym("h")
-    return ca.Function("rk4", [x, u0, u, u1, p, h], [_stepped(rhs, x, (u0, u, u1), p, h)])
+    return ca.Function("rk4", [x, u0, u, u1, p, h], [runge_kutta(rhs, x, (u0, u, u1), p, h)])
 
 
-def _stepped(rhs: ca.Function, x: Any, u: tuple[Any, Any, Any], p: Any, h: Any) -> Any:
+def runge_kutta(rhs: ca.Function, x: Any, u: tuple[Any, Any, Any], p: Any, h: Any) -> Any:
     """Return x after a classical Runge-Kutta step, with ``u`` at its beginning, middle and end."""
     k1 = rhs(x, u[0], p)
     k2 = rhs(x + h / 2 * k1, u[1], p)

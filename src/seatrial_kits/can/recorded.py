@@ -26,6 +26,8 @@ _BYTE_ORDER_MARK = "\xef\xbb\xbf"
 """At the beginning of a text in UTF-8 that Windows has written, as Latin-1."""
 _LOOKED_AT = 40
 """Lines at the beginning of a text, of which one has to be a frame."""
+_HEAD = 8192
+"""Bytes at the beginning of a file that say of which tool it is."""
 _GLOBAL = 255
 _FAST_PROPRIETARY = range(0x1FF00, 0x20000)
 _BROADCAST = 0xF0
@@ -103,8 +105,12 @@ _GARMIN = re.compile(
 
 def is_recording(path: Path, head: bytes) -> bool:
     """Return whether a file is one of `recorded_frames`, by its first bytes and its name."""
-    if head.startswith(VECTOR) or path.suffix.lower() in _BINARY:
+    if head.startswith(VECTOR) or _is_of_python_can(path):
         return not path.is_dir()
+    return _has_frame(head)
+
+
+def _has_frame(head: bytes) -> bool:
     text = head.decode("latin-1").removeprefix(_BYTE_ORDER_MARK)
     lines = text.splitlines()[:_LOOKED_AT]
     return any(_parsed(line) is not None for line in lines)
@@ -127,10 +133,18 @@ def recorded_frames(
     """
     with path.open("rb") as file:
         is_vector = file.read(len(VECTOR)) == VECTOR
-    if is_vector or path.suffix.lower() in _BINARY:
+    if is_vector or _is_of_python_can(path):
         yield from _by_python_can(path, skipped, is_vector=is_vector)
     else:
         yield from _of_text(path, skipped, is_fast or (lambda _: False))
+
+
+def _is_of_python_can(path: Path) -> bool:
+    """Return whether a file is called like one of python-can's, and is no text of other tools."""
+    if path.suffix.lower() not in _BINARY or path.is_dir():
+        return False
+    with path.open("rb") as file:
+        return not _has_frame(file.read(_HEAD))
 
 
 def _by_python_can(path: Path, skipped: Counter[str], *, is_vector: bool) -> Iterator[Recorded]:

@@ -7,7 +7,7 @@ from typing import Any
 
 import casadi as ca
 
-from seatrial.model.expressions import Model
+from seatrial.model.expressions import Model, runge_kutta
 
 
 def sensitive_period(
@@ -25,26 +25,31 @@ def sensitive_period(
     of, with those that are ``known``, which then stand between q and the period. ``read(x, u)``
     gives the readings (m,) at the beginning of the period. The state is x (n,)
     with dx/dq (n, k) stacked column by column; the other result is the readings with
-    their sensitivities (m, k), likewise. They are the variational equations of the discrete
-    step, Runge-Kutta of order 4 in ``substeps`` parts: exact for what is simulated. ``moved`` are
-    the places of the states that depend on q, None: all; dx/dq has the rows of those alone.
+    their sensitivities (m, k), likewise. Runge-Kutta of order 4, in ``substeps`` parts, integrates
+    the state and its variational equations alike, which gives the exact derivatives of the state's
+    own steps. ``moved`` are the places of the states that depend on q, None: all; dx/dq has the
+    rows of those alone.
     """
-    period = ca.SX.sym("h")
     x, u = ca.SX.sym("x", len(model.x_names)), ca.SX.sym("u", len(model.u_names))
-    after = x
-    for _ in range(substeps):
-        after = model.rk4(after, u, p, period / substeps)
-    readings = read(x, u)
     places = list(range(x.numel())) if moved is None else list(moved)
     own = ca.SX.sym("S", len(places), unknowns.numel())
     sensitivity = ca.SX(x.numel(), unknowns.numel())
     sensitivity[places, :] = own
-
-    def total(f: Any) -> Any:
-        return ca.jacobian(f, x) @ sensitivity + ca.jacobian(f, unknowns)
-
     state = ca.vertcat(x, ca.vec(own))
-    following = ca.vertcat(after, ca.vec(total(after)[places, :]))
-    rows = ca.vertcat(readings, ca.vec(total(readings)))
-    given = ca.vertcat(unknowns, ca.SX(0, 1) if known is None else known, period)
-    return ca.Function("period", [state, u, given], [ca.densify(following), ca.densify(rows)])
+    given = ca.vertcat(unknowns, ca.SX(0, 1) if known is None else known)
+
+    def varied(name: str, f: Any, rows: Sequence[int]) -> ca.Function:
+        total = ca.jacobian(f, x) @ sensitivity + ca.jacobian(f, unknowns)
+        stacked = ca.vertcat(f, ca.vec(total[rows, :]))
+        return ca.Function(name, [state, u, given], [ca.densify(ca.cse(stacked))])
+
+    readings = read(x, u)
+    slope = varied("slope", model.rhs(x, u, p), places)
+    rows = varied("rows", readings, range(readings.numel()))
+    z, v = ca.MX.sym("z", state.numel()), ca.MX.sym("v", u.numel())
+    last = ca.MX.sym("given", given.numel() + 1)
+    q, period = last[:-1], last[-1]
+    after = z
+    for _ in range(substeps):
+        after = runge_kutta(slope, after, (v, v, v), q, period / substeps)
+    return ca.Function("period", [z, v, last], [after, rows(z, v, q)])

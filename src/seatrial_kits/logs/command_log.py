@@ -21,6 +21,7 @@ from seatrial.trial.logs.formats import FORMATS, format_of, read_log
 from seatrial.trial.logs.quantities import defaults, read_columns, series
 
 from .paired.common_time import GAP
+from .paired.steady_clock import from_zero, steady
 from .reading import reading
 
 _MOST_SHOWN = 40
@@ -39,7 +40,7 @@ def log(
     named = read_columns(columns or [])
     name = format_name or format_of(path)
     with reading(path):
-        found = read_log(path, name, named.pop("time", None))
+        found = from_zero(steady(read_log(path, name, named.pop("time", None))))
     serves: dict[str, list[str]] = {}
     for what, column in {**defaults(found), **named}.items():
         serves.setdefault(series(found, what, column).channel.name, []).append(what)

@@ -15,10 +15,10 @@ from typing import Any
 import numpy as np
 
 from seatrial.errors import InputError, unknown
-from seatrial.trial.logs.channels import Array, Channel, Integers, Log, channel
+from seatrial.trial.logs.channels import Array, Channel, Integers, Log, channel, empty_cells
 from seatrial.trial.logs.clock_times import of_day, parsed_time, past_midnight
 from seatrial.trial.logs.formats import Format
-from seatrial.trial.logs.quantities import QUANTITIES, Column, series
+from seatrial.trial.logs.quantities import QUANTITIES, Column, times_of
 from seatrial.trial.logs.reading_progress import open_text
 from seatrial.trial.records.run_folder import ends_with_newline
 
@@ -26,6 +26,8 @@ from .run_log import of_craft
 
 _SEPARATORS = (";", "\t", ",")
 _WITH_UNIT = re.compile(r"(.+?)\s*[\[(]([^\[\]()]+)[\])]")
+_EMPTY = ("", "nan")
+"""Cells without a value."""
 _CHUNK = 50_000
 """Rows that are held as text at once."""
 _MOST_WRONG = 1000
@@ -68,7 +70,8 @@ class _Table:
             self.values[place].append(numbers)
             wrong = self.wrong[place]
             for row in np.flatnonzero(~np.isfinite(numbers)) if len(wrong) < _MOST_WRONG else ():
-                wrong[done + int(row)] = cells[row]
+                if cells[row].lower() not in _EMPTY:
+                    wrong[done + int(row)] = cells[row]
 
     def channels(self) -> dict[str, Channel]:
         """Return the columns as channels, whose times are to be set; the table is empty then."""
@@ -94,7 +97,8 @@ def _read(path: Path, time: Column | None) -> Log:
     Columns are separated by commas, or by semicolons or tabs, with which a comma in a number is a
     decimal one. The first line has the names, ``name``, ``name [unit]`` or ``name (unit)``; the
     second may have the units. The time is the column ``time`` unless another is named: a number,
-    in s without a unit, or ISO 8601, a date or a time of day. A last line that is cut is left out.
+    in s without a unit, or ISO 8601, a date or a time of day. Other cells may be empty, or ``nan``.
+    A last line that is cut is left out. Text that is not UTF-8 is that of Windows, code page 1252.
 
     Raises InputError, with line and column, for a file that is no such table, one without a column
     of the time, and a time that cannot be read.
@@ -104,12 +108,13 @@ def _read(path: Path, time: Column | None) -> Log:
     channels = table.channels()
     craft = of_craft(channels)
     served = {what: [what, *craft.get(what, ())] for what in QUANTITIES}
-    log = Log(path, channels, served, notes=table.notes, row="line", table=True)
+    notes = (*table.notes, *empty_cells(channels))
+    log = Log(path, channels, served, notes=notes, row="line", table=True)
     moments = channels[column.name].values
     if not len(moments):
         seconds = moments
     elif table.first is None:
-        seconds = series(log, "time", column).values
+        seconds = times_of(log, column)
     elif isinstance(table.first, datetime):
         seconds = moments
     else:
@@ -144,7 +149,7 @@ def _seconds(table: _Table, line: int, cell: str) -> float:
 def _table(path: Path, time: str) -> _Table:
     """Return the table in a file, read by `_CHUNK` rows. Raises InputError."""
     try:
-        with open_text(path, "utf-8-sig", newline="") as file:
+        with open_text(path, _encoding(path), newline="") as file:
             head = file.readline()
             separator = next((each for each in _SEPARATORS if each in head), ",")
             file.seek(0)
@@ -163,6 +168,17 @@ def _table(path: Path, time: str) -> _Table:
     except csv.Error as error:
         raise InputError(f"{path}: not CSV: {error}") from None
     return table
+
+
+def _encoding(path: Path) -> str:
+    """Return the encoding of a text, by its first line."""
+    with path.open("rb") as file:
+        first = file.readline()
+    try:
+        first.decode("utf-8")
+    except UnicodeDecodeError:
+        return "cp1252"
+    return "utf-8-sig"
 
 
 def _headed(path: Path, header: list[str], separator: str, time: str) -> _Table:

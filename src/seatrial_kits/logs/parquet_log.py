@@ -10,10 +10,10 @@ from typing import Any
 import numpy as np
 
 from seatrial.errors import InputError, unknown
-from seatrial.trial.logs.channels import Array, Channel, Log, channel
+from seatrial.trial.logs.channels import Array, Channel, Log, channel, empty_cells
 from seatrial.trial.logs.clock_times import date_of
 from seatrial.trial.logs.formats import Format
-from seatrial.trial.logs.quantities import QUANTITIES, Column, series
+from seatrial.trial.logs.quantities import QUANTITIES, Column, times_of
 
 from .parquet_file import TIME
 from .run_log import of_craft
@@ -55,7 +55,7 @@ def _read(path: Path, time: Column | None) -> Log:
             channels[name] = channel(name, unit, rows, values)
     craft = of_craft(channels)
     served = {what: [what, *craft.get(what, ())] for what in QUANTITIES}
-    log = Log(path, channels, served, row="row", table=True)
+    log = Log(path, channels, served, notes=tuple(empty_cells(channels)), row="row", table=True)
     return _timed(log, time or _time_column({*channels, *dates}), dates)
 
 
@@ -78,7 +78,7 @@ def _timed(log: Log, time: Column, dates: dict[str, Array]) -> Log:
     else:
         found = len(log.channels[time.name].time) > 0
         # To the nanosecond: what was written as whole ones reads back so.
-        seconds = np.round(series(log, "time", time).values, 9) if found else np.empty(0)
+        seconds = np.round(times_of(log, time), 9) if found else np.empty(0)
     channels = {name: replace(each, time=seconds) for name, each in log.channels.items()}
     return replace(log, channels=channels, start=start)
 

@@ -6,7 +6,7 @@ import pytest
 
 from seatrial.errors import InputError
 from seatrial.trial.logs.formats import read_log
-from seatrial.trial.logs.quantities import Column
+from seatrial.trial.logs.quantities import Column, series
 
 
 @pytest.fixture
@@ -65,6 +65,8 @@ def test_units_of_the_time(read):
         ("t,a\n0,1\n", "line 1: time: unknown column 'time'.*--columns time=NAME names it"),
         ("time,a\n0,5,1,5\n", "line 2: 4 values, the header has 2; with decimal commas, ';'"),
         ("time,a\n0,1,5\n", "line 2: 3 values, the header has 2$"),
+        ("time,a\n", "boat.csv: no row of values was found in it, read as CSV"),
+        ("time,a\n0,1\n,2\n", "line 3, column 'time': the row has no time"),
         ("time,a,a\n0,1,5\n", "the column 'a' occurs twice"),
         ("time,a\n0,1\nx,2\n", "line 3, column 'time': a finite number is needed, found 'x'"),
         ("time,a\n12:00:00,1\n12 o'clock,2\n", "line 3, .* a time of day by ISO 8601 .* 'clock"),
@@ -74,6 +76,27 @@ def test_units_of_the_time(read):
 def test_no_tables(read, text, message):
     with pytest.raises(InputError, match=message.replace("'clock", "o'clock")):
         read(text)
+
+
+def test_empty_cells_have_no_value(read):
+    """As loggers of several rates leave them; any other text is a mistake."""
+    found = read("time,HDG,u\n0,1,\n1,,2\n2,3,nan\n3,4,abc\n")
+    heading = series(found, "heading", Column("HDG"))
+    assert heading.time.tolist() == [0.0, 2.0, 3.0]
+    assert heading.values.tolist() == [1.0, 3.0, 4.0]
+    assert found.notes == ("cells without a number, by column: HDG (1)",)
+    with pytest.raises(InputError, match=r"line 5, column 'u': .* found 'abc'"):
+        series(found, "speed", Column("u"))
+
+
+def test_a_spreadsheet_of_windows(tmp_path):
+    (tmp_path / "boat.csv").write_bytes("time;Höhe [m];Kurs [°]\n0;1;2\n".encode("cp1252"))
+    assert list(read_log(tmp_path / "boat.csv").channels) == ["time", "Höhe", "Kurs"]
+
+
+def test_a_folder_is_no_log(tmp_path):
+    with pytest.raises(InputError, match="a folder that is neither a run nor a ROS 2 bag"):
+        read_log(tmp_path)
 
 
 def test_bytes_that_are_no_text(tmp_path):

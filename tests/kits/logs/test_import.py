@@ -169,3 +169,23 @@ def test_what_is_not_known_is_not_compared(tmp_path):
     done = seatrial("trials", "figures", "boat", "--manoeuvre", "turning-circle", cwd=tmp_path)
     assert done.returncode == 2
     assert "a gap from" in done.stderr
+
+
+def test_a_heading_in_degrees_that_is_said_to_be_in_radians(tmp_path):
+    rows = "".join(f"{k / 10},0,0,{k * 5 % 360}\n" for k in range(100))
+    (tmp_path / "boat.csv").write_text(f"time,north [m],east [m],heading [rad]\n{rows}")
+    done = seatrial("import", "boat.csv", cwd=tmp_path)
+    assert done.returncode == 2
+    assert "line 74, column 'heading': heading goes from 355 rad to 0 rad" in done.stderr
+    assert "is it in degrees?" in done.stderr
+
+
+def test_columns_of_several_rates_in_one_table(tmp_path):
+    """Fixes each second and headings each 0.2 s, with empty cells between the fixes."""
+    rows = [(k / 5, f"{k / 5:g}" if k % 5 == 0 else "", 2 * k) for k in range(101)]
+    text = "".join(f"{t},{north},{north and 0},{psi}\n" for t, north, psi in rows)
+    (tmp_path / "boat.csv").write_text(f"time,north [m],east [m],heading [deg]\n{text}")
+    done = seatrial("import", "boat.csv", "-o", "run", cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    run = load_run(tmp_path / "run")
+    np.testing.assert_allclose(run.signals["log.position.x"], run.time, atol=1e-9)

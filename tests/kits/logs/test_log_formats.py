@@ -38,10 +38,9 @@ def test_units_in_the_metadata_and_times_in_milliseconds(tmp_path):
     heading = found.channels["HDG"]
     assert (heading.unit, heading.time.tolist()) == ("deg", [0.0, 0.25, 0.5])
     assert "note" not in found.channels
-    with pytest.raises(
-        InputError, match="row 3, column 'HDG': a finite number is needed, found 'nothing'"
-    ):
-        chosen(found, {"heading": Column("HDG")}, ["heading"])
+    assert found.notes == ("cells without a number, by column: HDG (1)",)
+    served = chosen(found, {"heading": Column("HDG")}, ["heading"])["heading"]
+    assert served.time.tolist() == [0.0, 0.25]
 
 
 def test_a_column_of_the_time_is_needed(tmp_path):

@@ -35,6 +35,15 @@ def counted(kinds: Counter[Any], what: str) -> list[str]:
     return [f"{what}: {', '.join(named)}"]
 
 
+def empty_cells(channels: Mapping[str, Channel]) -> list[str]:
+    """Return the note on the empty cells of a table's columns that have numbers; none without."""
+    found = Counter[str]()
+    for name, each in channels.items():
+        lacking = int(np.count_nonzero(np.isnan(each.values)))
+        found[name] = 0 if each.wrong or lacking == len(each.values) else lacking
+    return counted(+found, "cells without a number, by column")
+
+
 @dataclass(frozen=True, eq=False)
 class Channel:
     """One measured value over time: arrays (n,)."""
@@ -49,7 +58,7 @@ class Channel:
     rows: Integers
     """Number of the line, row or message that each value stands in."""
     wrong: Mapping[int, str] = field(default_factory=dict)
-    """The text in the place of a number, by index."""
+    """Texts in the place of a number, by index: mistakes to be refused."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,7 +79,7 @@ class Log:
     row: str = "message"
     """Kind of entry: line, row or message."""
     table: bool = False
-    """Whether all channels have the same times, and a faulty cell is a mistake to be refused."""
+    """Whether all channels have the same times: rows of columns."""
 
     def channel(self, name: str) -> Channel:
         """Return a channel; raises InputError, with near misses, if there is none of that name."""

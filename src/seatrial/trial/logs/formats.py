@@ -71,6 +71,8 @@ def read_log(path: Path, format_name: str | None = None, time: Column | None = N
         raise InputError(
             f"{path}: no channel was found in it, read as {chosen.title} ({name}){there}"
         )
+    if not any(len(each.values) for each in log.channels.values()):
+        raise InputError(f"{path}: no row of values was found in it, read as {chosen.title}")
     return log if log.defaults else replace(log, defaults=chosen.defaults)
 
 
@@ -101,5 +103,7 @@ def _found(path: Path, head: bytes) -> str:
     packed = next((name for magic, name in _PACKED.items() if head.startswith(magic)), None)
     if packed is not None:
         raise InputError(f"{path}: is compressed ({packed}); logs are read as they are unpacked")
+    if path.is_dir():
+        raise InputError(f"{path}: a folder that is neither a run nor a ROS 2 bag; name a file")
     titles = ", ".join(f"{name} ({FORMATS.load(name).title})" for name in FORMATS.names())
     raise InputError(f"{path}: its format is not known; --format can name one of {titles}")

@@ -122,9 +122,9 @@ def chosen(
     value without a unit is in that of `QUANTITIES`, or refused where ``units_needed``.
 
     Raises InputError, with file and channel, for a channel that is missing, a unit of another
-    quantity, or another than the log has, a table's cell that is no finite number, and values that
-    are beyond their limit, as degrees in the place of radians are. In logs that are no table,
-    entries that are no number are left out.
+    quantity, or another than the log has, text in a table's cell, and values that are beyond their
+    limit, as degrees in the place of radians are. Empty cells, and entries that are no number, are
+    left out.
     """
     found = {}
     for what in wanted:
@@ -166,10 +166,10 @@ def series(
         raise InputError(f"{log.path}: {what}: {unknown(log.noun, name, log.channels)}")
     found, quantity = log.channels[name], quantity or QUANTITIES[what]
     factor, offset = _factor(log, found, column.unit, quantity, units_needed)
-    if log.table and len(bad := np.flatnonzero(~np.isfinite(found.values))):
-        text = found.wrong.get(int(bad[0]), "nothing")
+    if found.wrong:
+        first = min(found.wrong)
         raise InputError(
-            f"{log.place(found, int(bad[0]))}: a finite number is needed, found {text!r}"
+            f"{log.place(found, first)}: a finite number is needed, found {found.wrong[first]!r}"
         )
     known = np.isfinite(found.values) & np.isfinite(found.time)
     kept, time, values = np.flatnonzero(known), found.time, found.values
@@ -187,6 +187,15 @@ def series(
             f"beyond {quantity.most:.4g}; is it in degrees? (--columns {what}={name}:deg)"
         )
     return result
+
+
+def times_of(log: Log, column: Column) -> Array:
+    """Return the times of a table's rows, s. Raises InputError for a row without one."""
+    found = series(log, "time", column)
+    if len(found.values) < len(found.channel.values):
+        lacking = int(np.flatnonzero(~np.isfinite(found.channel.values))[0])
+        raise InputError(f"{log.place(found.channel, lacking)}: the row has no time")
+    return found.values
 
 
 def _split(log: Log, name: str) -> tuple[str, float]:

@@ -63,13 +63,11 @@ class Predictor:
     Unknowns are the relative changes theta of the free parameters p = p_file (1 + theta), the
     current over ``speed``, north and east, and `STARTS`. Positions are those through the water plus
     the current times the time: in water that moves uniformly the same orders give the same
-    motion. Runge-Kutta of order 4 with the mean of the inputs over each step, exact derivatives of
-    its steps, which a compiler makes machine code of if it ``compiles`` and there is one.
+    motion. Runge-Kutta of order 4 with the mean of the inputs over each step, and exact derivatives
+    of its steps, as machine code if there is a compiler.
     """
 
-    def __init__(
-        self, craft: Craft, motion: Motion, free: Sequence[str], speed: float, *, compiles: bool
-    ) -> None:
+    def __init__(self, craft: Craft, motion: Motion, free: Sequence[str], speed: float) -> None:
         self.motion, self._speed, self._count = motion, speed, len(free)
         model, names = craft.model, list(craft.parameters)
         self._starts = craft.places(STARTS)
@@ -83,10 +81,8 @@ class Predictor:
         places = craft.places(READINGS)
         unknowns = ca.vertcat(theta, starts)
         step = sensitive_period(model, unknowns, p, lambda x, _: x[places], 1, self._moved, known)
-        if compiles:
-            step = compiled_function(step)
         self._known = np.array(list(craft.parameters.values()))
-        self._run = step.mapaccum(len(motion.steps), {"base": 8})
+        self._run = compiled_function(step).mapaccum(len(motion.steps), {"base": 8})
         self.elapsed = motion.record.time - motion.record.start
 
     def __call__(self, unknowns: Vector) -> tuple[Vector, Vector]:
@@ -157,7 +153,7 @@ def halved(motion: Motion) -> Motion:
 
 def _track(craft: Craft, motion: Motion) -> Vector:
     """Return the track (2, n) by the parameters of the file."""
-    run = craft.model.rk4.mapaccum(len(motion.steps), {"base": 8})
+    run = compiled_function(craft.model.rk4).mapaccum(len(motion.steps), {"base": 8})
     p = np.tile(np.array(list(craft.parameters.values()))[:, None], len(motion.steps))
     states = np.asarray(run(motion.start, motion.inputs, p, motion.steps[None, :]))
     places = craft.places(READINGS[:2])

@@ -15,10 +15,8 @@ from .craft import Craft
 from .prediction import CURRENT, READINGS, STARTS, Motion, Predictor
 
 _ROUNDS, _EVALUATIONS = 2, 30
-_ROUGH, _FINE = 1e-3, 1e-7
-"""Relative accuracy while something holds the parameters, and of the result."""
-_WORTH = 2500
-"""Steps of all passes from which a compiler saves more time than it takes."""
+ROUGH, FINE = 1e-3, 1e-7
+"""Relative accuracy of a solution that is compared or shown alone, and of the result."""
 _SPREAD = (0.01, 0.01, 0.01)
 """First scale of the residual of each reading, as a share of what the reading covers."""
 _LEAST_SPREAD = 1e-9
@@ -49,10 +47,7 @@ class Problem:
     def __init__(self, craft: Craft, motions: Sequence[Motion], free: Sequence[str]) -> None:
         self.craft, self.motions, self.free = craft, motions, tuple(free)
         self.speed = max(_speed(motion) for motion in motions)
-        compiles = sum(len(motion.steps) for motion in motions) > _WORTH
-        self._predictors = [
-            Predictor(craft, motion, free, self.speed, compiles=compiles) for motion in motions
-        ]
+        self._predictors = [Predictor(craft, motion, free, self.speed) for motion in motions]
         self.currents = [[f"{name} {i + 1}" for name in CURRENT] for i in range(len(motions))]
         """Names of north and east of the current of each pass."""
         self.named = (*self.free, *(name for pair in self.currents for name in pair))
@@ -77,21 +72,22 @@ class Problem:
         *,
         scales: Vector | None = None,
         prior: float | None = None,
+        accuracy: float = FINE,
     ) -> Solution:
         """Return the least sum over the unknowns ``looked_for`` and all states.
 
         The others keep what ``start`` has; the states start from there, or from `guess` if that is
         nearer to the logs. ``scales`` are those of the first round, None: a
         hundredth of what each reading covers. ``prior`` is the standard deviation that relative
-        changes are held to, None: nothing holds them. Raises InputError if the equations do not
-        follow the orders.
+        changes are held to, None: nothing holds them. ``accuracy`` is that of the sum and of the
+        unknowns, relative. Raises InputError if the equations do not follow the orders.
         """
         places = [i for i, name in enumerate(self.named) if name in looked_for]
         places += range(len(self.named), len(start))
         scales = self._first_scales() if scales is None else scales
         unknowns = self._nearer(start, scales)
         for _ in range(_ROUNDS):
-            unknowns = self._round(unknowns, places, scales, prior)
+            unknowns = self._round(unknowns, places, scales, prior, accuracy)
             residual, jacobian = self._weighted(unknowns, scales)
             used, scales = scales, self._scales(residual, scales)
         ratio = np.repeat((used / scales).ravel(), self.stretches)
@@ -105,7 +101,12 @@ class Problem:
         return (start if sums[0] <= sums[1] else other).copy()
 
     def _round(
-        self, start: Vector, places: list[int], scales: Vector, prior: float | None
+        self,
+        start: Vector,
+        places: list[int],
+        scales: Vector,
+        prior: float | None,
+        accuracy: float,
     ) -> Vector:
         from scipy.optimize import least_squares
 
@@ -114,7 +115,6 @@ class Problem:
         rows = np.zeros((len(held), len(places)))
         rows[np.arange(len(held)), [places.index(p) for p in held]] = weight
         last: list[Vector] = []
-        accuracy = _FINE if prior is None else _ROUGH
 
         def residual(z: Vector) -> Vector:
             unknowns[places] = z

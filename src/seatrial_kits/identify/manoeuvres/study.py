@@ -18,7 +18,7 @@ from .identifiability import Identifiability, identifiability
 from .intervals import WITHIN, bootstrap, deviations
 from .passes import Pass
 from .prediction import Motion, halved, motion_of
-from .problem import Problem, Solution
+from .problem import ROUGH, Problem, Solution
 from .replay import inputs_of
 
 _PRIOR = 0.5
@@ -140,7 +140,7 @@ def manoeuvre_study(
         return min((first, *others), key=lambda m: _left(craft, m, free)) if others else first
 
     problem = Problem(craft, [motion(run) for run in passes], free)
-    held = problem.solve(problem.named, problem.guess(), prior=_PRIOR)
+    held = problem.solve(problem.named, problem.guess(), prior=_PRIOR, accuracy=ROUGH)
     which = identifiability(held.jacobian, held.residual, problem.stretches, problem.named)
     if not set(which.shown) & set(problem.free):
         raise InputError(
@@ -155,7 +155,7 @@ def manoeuvre_study(
     start = final.unknowns.copy()
     start[: len(problem.free)] = 0.0
     currents = [name for name in which.shown if name not in problem.free]
-    before = problem.solve(currents, start, scales=held.scales)
+    before = problem.solve(currents, start, scales=held.scales, accuracy=ROUGH)
     rows = _rows(problem, final, which, np.abs(final.unknowns - rough.unknowns))
     shown = _shown(problem, passes, before, final)
     if checks:
@@ -173,7 +173,7 @@ def _left(craft: Craft, motion: Motion, free: Sequence[str]) -> float:
     The least product is the most likely of normal residuals whose variances are not known.
     """
     problem = Problem(craft, [motion], free)
-    found = problem.solve(problem.named, problem.guess(), prior=_PRIOR)
+    found = problem.solve(problem.named, problem.guess(), prior=_PRIOR, accuracy=ROUGH)
     return float(np.prod(found.scales))
 
 

@@ -12,12 +12,14 @@ from numpy.typing import NDArray
 from seatrial.errors import InputError
 from seatrial.model.units import conversion, unit
 from seatrial.trial.logs.channels import Array, Log
-from seatrial.trial.logs.quantities import QUANTITIES, Column, Quantity, defaults, series
+from seatrial.trial.logs.quantities import QUANTITIES, Column, Quantity, Series, defaults, series
 
 from .common_time import GAP
 
 HELD_MOST = 16
 """A channel of a log that is no table, with so few different values, is a state that is held."""
+_SLACK = 0.01
+"""rad by which a turn may be exceeded: rounding of values."""
 _BLOCK = 1 << 16
 """Instants that are looked up at once: a long log takes no more memory than its values."""
 
@@ -95,13 +97,29 @@ def trace(log: Log, name: str, column: Column, *, unit_needed: bool = False) -> 
 def served(log: Log, what: str, column: Column | None = None) -> Trace | None:
     """Return the quantity ``what`` in its unit, None where the log does not have it.
 
-    Raises InputError as `quantities.series` does.
+    Raises InputError as `quantities.series` does, and for an angle that changes by more than a
+    turn from one entry to the next.
     """
     column = column or defaults(log).get(what)
     if column is None:
         return None
     found, quantity = series(log, what, column), QUANTITIES[what]
+    if quantity.wraps:
+        _check_turns(found)
     return _made(what, quantity.unit, found.time, found.values, held=quantity.held)
+
+
+def _check_turns(found: Series) -> None:
+    steps, elapsed = np.abs(np.diff(found.values)), np.diff(found.time)
+    usual = usual_time(found.time, math.inf)
+    turned = np.flatnonzero((steps > math.tau + _SLACK) & (elapsed <= GAP * usual))
+    if len(turned):
+        row = int(turned[0])
+        raise InputError(
+            f"{found.place(row + 1)}: {found.what} goes from {found.values[row]:g} rad to "
+            f"{found.values[row + 1]:g} rad, more than a turn; is it in degrees? (--columns "
+            f"{found.what}={found.channel.name}:deg, where the file does not say the unit)"
+        )
 
 
 def _made(name: str, said: str, time: Array, values: Array, *, held: bool) -> Trace:

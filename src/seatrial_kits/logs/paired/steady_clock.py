@@ -36,6 +36,7 @@ def steady(log: Log) -> Log:
             f"the clock was set {_times(len(at))}, {first}: the record goes on without jump"
         )
     disordered = doubled = 0
+    entries = "rows" if log.table else "entries"
     channels = {}
     for name, each in log.channels.items():
         if not len(at) and np.all(each.time[1:] > each.time[:-1]):
@@ -46,12 +47,14 @@ def steady(log: Log) -> Log:
         if late:
             moved = _at(moved, np.argsort(moved.time, kind="stable"))
         kept = np.append(np.diff(moved.time) > 0.0, True)[: len(moved.time)]
-        disordered, doubled = disordered + late, doubled + int(np.count_nonzero(~kept))
+        if not (log.table and channels):  # the columns of a row have one time
+            disordered, doubled = disordered + late, doubled + int(np.count_nonzero(~kept))
         channels[name] = moved if kept.all() else _at(moved, np.flatnonzero(kept))
     if disordered:
-        notes.append(f"{disordered} entries were out of order and are put in their place")
+        notes.append(f"{disordered} {entries} were out of order and are put in their place")
     if doubled:
-        notes.append(f"{doubled} entries with the time of the next of their channel are left out")
+        whose = "" if log.table else " of their channel"
+        notes.append(f"{doubled} {entries} with the time of the next{whose} are left out")
     return replace(log, channels=channels, notes=tuple(notes))
 
 

@@ -172,6 +172,12 @@ def test_a_log_of_vector(tmp_path):
     np.testing.assert_allclose(found.time, [0.0, 1.0, 2.0])
 
 
+@pytest.mark.parametrize("name", ["boat.asc", "boat.trc"])
+def test_the_content_tells_the_tool(write, name):
+    found = read_log(write(name, line(1.0, 127250, heading(1.0)) + "\n"))
+    assert found.channels["127250.heading"].values.tolist() == [1.0]
+
+
 @pytest.mark.parametrize("content", [b"LOGG nothing", b"1,2,3\n"])
 def test_no_log_of_a_bus(tmp_path, content):
     (tmp_path / "boat.log").write_bytes(content)
