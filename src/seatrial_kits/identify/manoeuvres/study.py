@@ -150,12 +150,13 @@ def manoeuvre_study(
     start = held.unknowns.copy()
     start[[problem.named.index(name) for name in which.kept]] = 0.0
     rough = problem.solve(which.shown, start, scales=held.scales)
-    problem = Problem(craft, [halved(each) for each in problem.motions], free)
+    coarse = problem
+    problem = Problem(craft, [halved(each) for each in coarse.motions], free)
     final = problem.solve(which.shown, rough.unknowns, scales=rough.scales)
     start = final.unknowns.copy()
     start[: len(problem.free)] = 0.0
     currents = [name for name in which.shown if name not in problem.free]
-    before = problem.solve(currents, start, scales=held.scales, accuracy=ROUGH)
+    before = coarse.solve(currents, start, scales=held.scales, accuracy=ROUGH)
     rows = _rows(problem, final, which, np.abs(final.unknowns - rough.unknowns))
     shown = _shown(problem, passes, before, final)
     if checks:

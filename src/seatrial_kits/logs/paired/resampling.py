@@ -110,16 +110,17 @@ def served(log: Log, what: str, column: Column | None = None) -> Trace | None:
 
 
 def _check_turns(found: Series) -> None:
-    steps, elapsed = np.abs(np.diff(found.values)), np.diff(found.time)
-    usual = usual_time(found.time, math.inf)
-    turned = np.flatnonzero((steps > math.tau + _SLACK) & (elapsed <= GAP * usual))
-    if len(turned):
-        row = int(turned[0])
-        raise InputError(
-            f"{found.place(row + 1)}: {found.what} goes from {found.values[row]:g} rad to "
-            f"{found.values[row + 1]:g} rad, more than a turn; is it in degrees? (--columns "
-            f"{found.what}={found.channel.name}:deg, where the file does not say the unit)"
-        )
+    steps = np.diff(found.values)
+    np.abs(steps, out=steps)
+    turned = np.flatnonzero(steps > math.tau + _SLACK)
+    usual = usual_time(found.time, math.inf) if len(turned) else math.inf
+    for row in turned.tolist():
+        if found.time[row + 1] - found.time[row] <= GAP * usual:
+            raise InputError(
+                f"{found.place(row + 1)}: {found.what} goes from {found.values[row]:g} rad to "
+                f"{found.values[row + 1]:g} rad, more than a turn; is it in degrees? (--columns "
+                f"{found.what}={found.channel.name}:deg, where the file does not say the unit)"
+            )
 
 
 def _made(name: str, said: str, time: Array, values: Array, *, held: bool) -> Trace:
