@@ -23,8 +23,8 @@ AUTO = {"rover": 10, "sub": 3}
 DEPTH_HOLD = 2
 """Modes of ArduPilot Rover and ArduSub."""
 ADDRESS = "tcp:127.0.0.1:5760"
-READY_S, MISSION_S = 120.0, 900.0
-"""Wall time for the estimator to converge, and for the mission."""
+START_S, READY_S, MISSION_S = 300.0, 600.0, 900.0
+"""Wall time for the run to be built, for the estimator to converge, and for the mission."""
 _PREARM = mavutil.mavlink.MAV_SYS_STATUS_PREARM_CHECK
 _ABSOLUTE_POSITION = mavutil.mavlink.EKF_POS_HORIZ_ABS
 _STREAMS = {"SYS_STATUS": 1.0, "SYSTEM_TIME": 2.0, "EKF_STATUS_REPORT": 1.0, "HOME_POSITION": 0.5}
@@ -121,7 +121,7 @@ class Station:
 
 
 def _connected() -> Any:
-    deadline = time.monotonic() + 60.0
+    deadline = time.monotonic() + START_S
     while True:
         try:
             link = mavutil.mavlink_connection(ADDRESS, source_system=255, retries=1)
