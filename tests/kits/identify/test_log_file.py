@@ -55,8 +55,7 @@ def test_a_mark_of_windows_and_blank_lines_do_not_matter(pool):
 @pytest.mark.parametrize(
     ("column", "row", "cell", "expected"),
     [
-        ("ax", 3, "nan", "line 5, column 'ax': a finite number is needed, found 'nan'"),
-        ("ax", 3, "", "line 5, column 'ax': a finite number is needed, found ''"),
+        ("ax", 3, "inf", "line 5, column 'ax': a finite number is needed, found 'inf'"),
         ("beta", 0, "full", "line 2, column 'beta': a finite number is needed, found 'full'"),
         ("beta", 7, "130", "line 9, column 'beta': a command from -1 to 1 is needed, found 1.3"),
         ("t", 9, "0.85", "line 11: the time goes from 0.8 s to 0.85 s, rows 0.1 s apart"),
@@ -66,6 +65,13 @@ def test_a_mark_of_windows_and_blank_lines_do_not_matter(pool):
 def test_a_cell_that_is_wrong(pool, surge, column, row, cell, expected):
     with pytest.raises(InputError, match=f"pool.csv.*{expected}"):
         log_of(pool(changed(surge, column, row, cell)))
+
+
+@pytest.mark.parametrize("cell", ["", "nan"])
+def test_an_empty_cell_is_between_its_neighbours(pool, surge, cell):
+    whole, log = log_of(pool()), log_of(pool(changed(surge, "ax", 3, cell)))
+    assert whole.measured[4] < log.measured[3] < whole.measured[2]  # a monotone cubic
+    np.testing.assert_allclose(np.delete(log.measured, 3), np.delete(whole.measured, 3), atol=1e-12)
 
 
 def test_a_gap_says_how_much_is_missing(pool, surge):

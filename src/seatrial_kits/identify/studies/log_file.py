@@ -79,7 +79,7 @@ def read_log(experiment: Experiment, path: Path, format_name: str | None = None)
     """Return the log of the experiment's axis in a log of any format.
 
     Raises InputError naming file, line and column: for a column that is missing, a unit that
-    does not measure what it should, a cell that is no finite number, times that are not equally
+    does not measure what it should, text in a cell, times that are not equally
     spaced in a table, fewer than 50 rows, a command beyond -1 to 1 or one that never changes, and
     a heading that turns by more than 90 degrees between two rows, whose turns cannot be counted.
     """
