@@ -142,3 +142,14 @@ def test_energies_of_bands_add_up_whatever_the_bands():
 def test_impossible_numbers_are_named(make, named):
     with pytest.raises(InputError, match=named):
         make()
+
+
+@pytest.mark.parametrize(
+    ("height", "period", "inside"),
+    [
+        *((0.5, 4.0, True), (11.0, 18.9, True), (5.0, 19.0, True), (5.0, 19.1, False)),
+        *((0.49, 4.0, False), (11.1, 15.0, False), (0.6, 3.5, True), (0.6, 3.4, False)),
+    ],
+)
+def test_torsethaugen_says_where_it_was_fitted(height, period, inside):
+    assert (Torsethaugen(height, period).outside() is None) == inside

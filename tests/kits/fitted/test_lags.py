@@ -131,6 +131,11 @@ def test_the_terminals_have_a_member_for_each_place():
         ({"ballasts": "tank"}, "ballast_mass_1 is 0.0, of a tank"),
         ({"ballasts": "moving-mass", "ballast_mass_1": 1}, "ballast_travel_1"),
         (
+            {"ballasts": "moving-mass", "ballast_mass_1": 1, "ballast_travel_1": 0.1}
+            | {"ballast_axis_1": (0.6, 0.0, 0.9)},
+            "ballast_axis_1 .* a unit vector is needed, its length is 1.08167",
+        ),
+        (
             {"ballasts": "buoyancy-engine", "ballast_volume_1": 0.05},
             "ballast_volume_1 is 0.05, .* less than the craft's 0.03902 m3",
         ),
@@ -147,3 +152,4 @@ def test_parts_that_cannot_be_are_refused(values, message):
 
 def test_places_beyond_the_kinds_are_not_checked():
     craft(propulsors="thruster", propulsor_axis_2=(3, 0, 0), ballast_axis_1=(0, 0, 0)).initialise()
+    craft(ballasts="tank", ballast_mass_1=1.0, ballast_axis_1=(3, 0, 0)).initialise()
