@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import math
 import re
+from array import array
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from datetime import datetime, time
@@ -15,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from seatrial.errors import InputError, unknown
-from seatrial.trial.logs.channels import Array, Channel, Integers, Log, channel, empty_cells
+from seatrial.trial.logs.channels import Array, Channel, Log, channel, empty_cells
 from seatrial.trial.logs.clock_times import of_day, parsed_time, past_midnight
 from seatrial.trial.logs.formats import Format
 from seatrial.trial.logs.quantities import QUANTITIES, Column, times_of
@@ -37,7 +38,10 @@ _DECIMAL_COMMA = re.compile(r"[-+]?\d+,\d+([eE][-+]?\d+)?")
 
 @dataclass
 class _Table:
-    """The columns of a file: names, units, and by `_CHUNK` rows the line and the values of each."""
+    """The columns of a file: names, units, values, and the line of each row.
+
+    They grow in place: what many arrays leave behind, as they become one, is as large again.
+    """
 
     path: Path
     names: list[str]
@@ -45,8 +49,8 @@ class _Table:
     decimal_comma: bool
     time_place: int
     """Place of the column of the time."""
-    lines: list[Integers] = field(default_factory=list)
-    values: list[list[Array]] = field(default_factory=list)
+    lines: array[int] = field(default_factory=lambda: array("q"))
+    values: list[array[float]] = field(default_factory=list)
     wrong: list[dict[int, str]] = field(default_factory=list)
     """Of each column, the first texts in the place of numbers, by row."""
     first: datetime | time | None = None
@@ -55,38 +59,36 @@ class _Table:
 
     def take(self, lines: list[int], rows: list[list[str]]) -> None:
         """Add rows, which stand in ``lines``."""
-        done = sum(map(len, self.lines))
+        done = len(self.lines)
         if not self.values:
-            self.values = [[] for _ in self.names]
+            self.values = [array("d") for _ in self.names]
             self.wrong = [{} for _ in self.names]
             self.first = _clock_time(rows[0][self.time_place])
-        self.lines.append(np.array(lines, np.int64))
+        self.lines.extend(lines)
         for place, cells in enumerate(zip(*rows, strict=True)):
             if place == self.time_place and self.first is not None:
-                moments = [_seconds(self, *each) for each in zip(lines, cells, strict=True)]
-                self.values[place].append(np.array(moments))
+                moments = (_seconds(self, *each) for each in zip(lines, cells, strict=True))
+                self.values[place].extend(moments)
                 continue
             numbers = _numbers(cells, self.decimal_comma)
-            self.values[place].append(numbers)
+            self.values[place].frombytes(numbers.tobytes())
             wrong = self.wrong[place]
             for row in np.flatnonzero(~np.isfinite(numbers)) if len(wrong) < _MOST_WRONG else ():
                 if cells[row].lower() not in _EMPTY:
                     wrong[done + int(row)] = cells[row]
 
     def channels(self) -> dict[str, Channel]:
-        """Return the columns as channels, whose times are to be set; the table is empty then."""
+        """Return the columns as channels, whose times are to be set."""
         if not self.values:
             return {
                 name: Channel(name, unit, np.empty(0), np.empty(0), np.empty(0, np.int64))
                 for name, unit in zip(self.names, self.units, strict=True)
             }
-        lines = np.concatenate(self.lines)
-        self.lines.clear()
+        lines = np.asarray(self.lines)
         untimed = np.zeros(len(lines))
         found = {}
         for place, (name, unit) in enumerate(zip(self.names, self.units, strict=True)):
-            made = channel(name, unit, untimed, np.concatenate(self.values[place]), lines)
-            self.values[place] = []
+            made = channel(name, unit, untimed, self.values[place], lines)
             found[name] = replace(made, wrong=self.wrong[place])
         return found
 
