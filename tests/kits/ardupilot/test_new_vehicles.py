@@ -108,7 +108,7 @@ def test_a_boat_obeys_the_hand_and_goes_where_it_is_sent(like: str, tmp_path: Pa
             {"mode": MANUAL, "s": boat.seconds, "hand": [0.6, 0, 0]},
             {"mode": MANUAL, "s": boat.seconds, "hand": [0.6, 0.4, 0]},
             {"mode": HOLD, "s": 10.0},
-            {"mode": GUIDED, "s": 8.0 * boat.seconds, "to": boat.to},
+            {"mode": GUIDED, "s": 4.0 * boat.seconds, "to": boat.to},
         ],
         tmp_path,
     )
