@@ -85,7 +85,8 @@ def test_it_goes_round_its_square(like: str, sea: str, tmp_path: Path) -> None:
 def driven(like: str, orders: list[dict[str, object]], folder: Path) -> tuple[Run, list[slice]]:
     """Drive it in wind and waves; return the record, and the rows of each order."""
     firmware = "sub" if like == "rov" else "rover"
-    run = command(like, "wind and waves", folder, "boat")
+    lasts = 300.0 + sum(float(str(order["s"])) for order in orders)
+    run = command(like, "wind and waves", folder, "boat", "--set", f"stop={lasts} s")
     words = [sys.executable, "-m", "tests.kits.ardupilot.orders", firmware, json.dumps(orders)]
     printed = json.loads(ended([*words, "--", *run], folder).splitlines()[-1])
     assert not [text for text in printed["texts"] if "ailsafe" in text]
