@@ -25,6 +25,7 @@ _POSITION_ONLY = 0xDF8
 _AGAIN_S = 0.2
 """Firmware's time between two messages of a stick: it lets go of what is older than 3 s."""
 _NO_CHANNEL = 65535
+_ATTEMPTS = 20
 
 
 class Person(Station):
@@ -35,12 +36,15 @@ class Person(Station):
         self.is_sub = firmware == "sub"
 
     def arm(self) -> None:
-        """Arm it at rest."""
+        """Arm it at rest, again as long as its checks object: waves shake its accelerometers."""
         if self.is_sub:
             self._hand((0.0, 0.0, 0.0))
             assert self._set_mode(DEPTH_HOLD) == 0
-        done = self.command(mavutil.mavlink.MAV_CMD_COMPONENT_ARM_DISARM, 1.0)
-        assert done == 0, self.texts
+        for _ in range(_ATTEMPTS):
+            if self.command(mavutil.mavlink.MAV_CMD_COMPONENT_ARM_DISARM, 1.0) == 0:
+                return
+            self._pass(2.0)
+        raise AssertionError(self.texts)
 
     def order(self, order: dict[str, Any]) -> tuple[float, float]:
         """Give an order, and return when it began and ended."""
