@@ -11,25 +11,13 @@ from seatrial.devices.depth import Depth
 from seatrial.devices.gnss import Gnss
 from seatrial.devices.imu import Imu
 from seatrial.devices.marks import Marks
-from seatrial.devices.sensor import Measured, Sensor
-from seatrial.model.component import Input
 from seatrial.physics.environment.wind import Wind
 
 from .ideal import ideal
+from .probe import Probe
 from .running import over, run, started
 
 STEPS = 40
-
-
-class Probe(Sensor):
-    """Measures two numbers."""
-
-    truth = Input("m", "truth", axes="xy")
-    y = Measured("m", "measured", axes="xy", span=((-1.0, 0.0), (1.0, 10.0)))
-    feedthrough = {"y": ("truth",)}  # noqa: RUF012
-
-    def measure(self):
-        return self.truth
 
 
 def test_a_measurement_is_the_truth_with_its_errors():

@@ -10,23 +10,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from seatrial.devices.sensor import Measured, Sensor
-from seatrial.model.component import Input
-
+from .probe import Probe
 from .running import run, started
 
 SIGMAS = 3.9
-
-
-class Probe(Sensor):
-    """Measures two numbers."""
-
-    truth = Input("m", "truth", axes="xy")
-    y = Measured("m", "measured", axes="xy", span=((-1.0, 0.0), (1.0, 10.0)))
-    feedthrough = {"y": ("truth",)}  # noqa: RUF012
-
-    def measure(self):
-        return self.truth
 
 
 ROUGH = {

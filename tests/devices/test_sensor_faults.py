@@ -9,8 +9,9 @@ from seatrial.devices.compass import Compass
 from seatrial.errors import InputError
 from seatrial.model.faults.catalogue import FAILURES as FAULTS
 
+from .probe import Probe
 from .running import run, started
-from .test_sensor import ROUGH, SIGMAS, Probe
+from .test_sensor import ROUGH, SIGMAS
 
 BROKEN_MS, REPAIRED_MS = 500, 1000
 OUTPUTS = ["y", "valid", "count"]

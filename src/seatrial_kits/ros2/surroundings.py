@@ -28,18 +28,21 @@ class Traffic:
 
     def __init__(self) -> None:
         self._inbox = Inbox({})
-        made = offered("nmea.ais")
-        self._read: Any = None if made is None else made()
+        self._read: Any = None
         self._known: dict[int, tuple[int, Fields]] = {}
         self._due_ns: int | None = None
 
     def messages(self, sentences: str, here: Here) -> Iterator[tuple[str, Fields]]:
         """Return topics and messages of the port's text, and of the targets when they are due."""
-        for _, data in self._inbox.take(sentences):
+        new = self._inbox.take(sentences)
+        if new and self._due_ns is None:
+            # With the first sentence: most vehicles have no AIS, and its library takes time.
+            self._due_ns, made = here.now_ns, offered("nmea.ais")
+            self._read = made and made()
+        for _, data in new:
             text = data.decode("ascii", "replace").rstrip("\r\n")
             yield "nmea", {"header": here.header(BASE), "sentence": text}
             self._take(data, here)
-            self._due_ns = here.now_ns if self._due_ns is None else self._due_ns
         if self._read and self._due_ns is not None and here.now_ns >= self._due_ns:
             self._due_ns = here.now_ns + _EVERY_NS
             yield "ais_targets", self._targets(here)

@@ -13,10 +13,10 @@ pytestmark = [needs_kits("nmea", "ships"), pytest.mark.slow]
 
 
 def test_ships_that_ais_reports_are_targets_in_map_and_sentences(domain):
-    reader = Participant(domain)
+    participant = Participant(domain)
     names = Names("mariner", "")
-    heard = {
-        key: reader.reader(names.of(key, PUBLISHED[key]), PUBLISHED[key].kind, 1000)
+    readers = {
+        key: participant.reader(names.of(key, PUBLISHED[key]), PUBLISHED[key].kind, 1000)
         for key in ("nmea", "ais_targets")
     }
     simulation = Simulation(
@@ -28,11 +28,11 @@ def test_ships_that_ais_reports_are_targets_in_map_and_sentences(domain):
         known = simulation.get("mariner_ais.targets")
         taken = {
             key: [s.message for s in each.take(1000) if s.sample_info.valid_data]
-            for key, each in heard.items()
+            for key, each in readers.items()
         }
     finally:
         simulation.close()
-        reader.close()
+        participant.close()
     sentences = [each.sentence for each in taken["nmea"]]
     received = {pyais.decode(s).mmsi for s in sentences if s.startswith("!AIVDM,1,")}
     assert len(received) == known > 3
