@@ -27,8 +27,9 @@ from typing import Any
 import seatrial
 from seatrial.model.component import Component
 from seatrial_kits.ros2.component import Ros2
-from seatrial_kits.ros2.dds.packing import packed
 from seatrial_kits.ros2.dds.participant import Participant
+from seatrial_kits.ros2.joining import join
+from seatrial_kits.ros2.messages.packing import packed
 from seatrial_kits.ros2.topics import COMMANDED, PUBLISHED, Names
 
 from .pages import addition, write_measured
@@ -108,7 +109,7 @@ def move(made: Component, k: int) -> None:
 
 def read(ready: Event, done: Event) -> None:
     """Read all topics of both links, until it is ``done``."""
-    participant = Participant(DOMAIN)
+    participant = join(DOMAIN, "/bench", "dds")
     topics = [PUBLISHED[key] for key in ("clock", "tf", "odometry", *SENSORS)]
     full = {(Names(name, "").full(topic.name), topic.kind) for name in LINKS for topic in topics}
     readers = [participant.reader(name, kind) for name, kind in full]
@@ -121,7 +122,7 @@ def read(ready: Event, done: Event) -> None:
 
 def command(ready: Event, done: Event, domain: int, interval: float) -> None:
     """Command the first link by growing velocities, until it is ``done``."""
-    participant = Participant(domain)
+    participant = join(domain, "/bench", "dds")
     writer = participant.writer(Names(LINKS[0], "").full(TWIST.name), TWIST.kind)
     ready.set()
     sent = 0
@@ -139,14 +140,13 @@ def witness(ready: Event, done: Event, domain: int, received: Queue[Any]) -> Non
     participant = Participant(domain)
     reader = participant.reader(Names(LINKS[0], "").full(TWIST.name), TWIST.kind)
     waiting, found = WaitSet(participant.dds), {}
-    waiting.attach(ReadCondition(reader, SampleState.NotRead | ViewState.Any))
+    waiting.attach(ReadCondition(reader.dds, SampleState.NotRead | ViewState.Any))
     ready.set()
     while not done.is_set():
         waiting.wait(duration(milliseconds=100))
         now = time.monotonic()
         for each in reader.take(100):
-            if each.sample_info.valid_data:
-                found[float(each.message.linear.x)] = now
+            found[float(each.message.linear.x)] = now
     received.put(found)
     participant.close()
 

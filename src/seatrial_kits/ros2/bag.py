@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from .dds.definitions import type_store
+from .messages.definitions import type_store
 
 
 class Bag:

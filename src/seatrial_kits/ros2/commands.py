@@ -6,12 +6,12 @@ from collections.abc import Callable, Sequence
 
 from seatrial.links.unconnected import is_connected
 
-from .dds.participant import Participant
-from .dds.watched import Watched
 from .ports import Ros2Ports
 from .steering import Orders, VelocityOrders, goal_orders, unfollowed, wrench_orders
 from .thrusters import Actuator, actuators
 from .topics import ACTUATORS, COMMANDED, Names
+from .transport import Transport
+from .watched import Watched
 
 Values = dict[str, float]
 
@@ -25,7 +25,7 @@ class Commands:
     """
 
     def __init__(
-        self, participant: Participant, link: Ros2Ports, names: Names, say: Callable[[str], None]
+        self, transport: Transport, link: Ros2Ports, names: Names, say: Callable[[str], None]
     ) -> None:
         self._say, self._link = say, link
         self._said: set[str] = set()
@@ -36,7 +36,7 @@ class Commands:
         for key, topic in COMMANDED.items():
             name = names.of(key, topic)
             if name is not None and (key != "cmd_wrench" or any(wrench)):
-                self.watched[key] = Watched(participant, name, topic.kind, link.timeout, say)
+                self.watched[key] = Watched(transport, name, topic.kind, link.timeout, say)
         self.actuators = actuators(link)
         for each in self.actuators:
             for way in each.ways:
@@ -44,8 +44,8 @@ class Commands:
                 if full is not None:
                     kind = ACTUATORS[way].kind
                     key = f"{each.name}.{way}"
-                    self.watched[key] = Watched(participant, full, kind, link.timeout, say)
-        self.arrived = participant.arrivals([each.reader for each in self.watched.values()])
+                    self.watched[key] = Watched(transport, full, kind, link.timeout, say)
+        self.arrived = transport.arrivals([each.reader for each in self.watched.values()])
         """Whether messages have come that were not taken in yet."""
 
     @property

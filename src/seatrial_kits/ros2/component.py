@@ -20,12 +20,10 @@ from seatrial.model.sampled import Sampled
 from . import faults
 from .bag import Bag
 from .commands import Commands
-from .dds.participant import Participant
-from .dds.services import Service
 from .diagnostics import diagnostics
 from .faults import NONE, Faults
-from .graph import Graph
 from .instruments import Instruments
+from .joining import join
 from .lockstep import Lockstep, awaited
 from .mismatches import Mismatches
 from .outlet import Outlet
@@ -34,6 +32,7 @@ from .published import Here
 from .simulator import Simulator
 from .steering import Orders
 from .topics import Names
+from .transport import Transport
 
 _LOGGER = logging.getLogger("seatrial.ros2")
 _LEG_RADIUS = 3.0
@@ -78,7 +77,7 @@ class Ros2(Ros2Ports):
         if port.kind == "output"
     }
     transient = Sampled.transient | {
-        "_participant",
+        "_joined",
         "_outlet",
         "_commands",
         "_lockstep",
@@ -87,13 +86,12 @@ class Ros2(Ros2Ports):
         "_fault_service",
         "_names",
         "_mismatches",
-        "_graph",
         "_bag",
     }
 
     def __init__(self, name: str = "component") -> None:
         super().__init__(name)
-        self._participant: Participant | None = None
+        self._joined: Transport | None = None
         self._commands: Commands | None = None
         self._bag: Bag | None = None
 
@@ -101,8 +99,9 @@ class Ros2(Ros2Ports):
         """Join the domain."""
         self.close()
         try:
-            self._participant = Participant(round(self.domain))
             self._names = Names(self.namespace, self.topics)
+            node = self.simulator or self._names.full("seatrial")
+            self._joined = join(round(self.domain), node, self.transport)
         except InputError as error:
             self.close()
             raise InputError(f"{self.name}: {error}") from None
@@ -112,14 +111,15 @@ class Ros2(Ros2Ports):
         place = self.latitude, self.longitude, self.altitude
         self._field = earth_field(*place, 1e-6 * boot_us)
         self._instruments = Instruments(read_instruments(self.instruments))
-        self._outlet = Outlet(self._participant, self._names)
-        self._mismatches = Mismatches(self._participant, self._say)
-        self._graph = Graph(self._participant, self.simulator or self._names.full("seatrial"))
+        self._outlet = Outlet(self._joined, self._names, self._say)
+        self._mismatches = Mismatches(self._joined, self._say)
         self._lockstep: Lockstep | None = None
         self._simulator: Simulator | None = None
         if self.simulator:
             entity = self._names.namespace.removeprefix("/")
-            self._simulator = Simulator(self._participant, self.simulator, self, entity)
+            self._simulator = Simulator(self._joined, self.simulator, self, entity)
+            for lacking in self._simulator.lacking:
+                self._say(f"a service is not offered: {lacking}")
         self._faults: Faults | None = None
         self._diagnosed_ns, self._diagnosed = self._boot_ns, ""
         self._orders, self._source, self._reached = Orders(), "none", 0
@@ -167,11 +167,13 @@ class Ros2(Ros2Ports):
             self.refused, self.late = self._commands.refused, self._commands.late
         if self._faults is not None:
             self.failure = [self._faults.acting.get(unit, NONE) for unit in UNITS]
-        assert self._participant is not None
-        self.reached_at = f"ros2://{self._participant.domain}{self._names.namespace}"
+        assert self._joined is not None
+        self.reached_at = f"ros2://{self._joined.domain}{self._names.namespace}"
 
     def update(self, t: float, k: int) -> None:
         """Write what is due; in lockstep wait for the answer."""
+        joined = self._joined
+        assert joined is not None
         now_ns = self._boot_ns + round(t * NS)
         here = Here(now_ns, self.frame_prefix, self._origin, self._field, self._instruments)
         if self.bag == "on" and self.run_folder and self._bag is None:
@@ -179,7 +181,7 @@ class Ros2(Ros2Ports):
         if self._commands is None:
             self._outlet.open(self, here)
         commands = self._begun()
-        self._graph.tell()
+        joined.announce()
         if self._lockstep is not None:
             self._lockstep.meet(self._outlet.matches)
         self._outlet.write(self, here)
@@ -209,21 +211,21 @@ class Ros2(Ros2Ports):
             self._diagnose(self._boot_ns + self.now_ns)
         if self._bag is not None:
             self._bag.close()
-        if self._participant is not None:
-            self._participant.close()
-        self._participant = self._commands = self._bag = None
+        if self._joined is not None:
+            self._joined.close()
+        self._joined = self._commands = self._bag = None
 
     # ------------------------------------------------------------------ inside
 
     def _begun(self) -> Commands:
         """Return the commands: their readers are made once it is known what the pilot drives."""
         if self._commands is None:
-            assert self._participant is not None
-            self._commands = Commands(self._participant, self, self._names, self._say)
+            assert self._joined is not None
+            self._commands = Commands(self._joined, self, self._names, self._say)
             sensors = read_instruments(self.instruments)
             self._faults = Faults(sensors, self._commands.actuators)
             name, inject = self._names.full("inject_fault"), self._faults.inject
-            self._fault_service = Service(self._participant, name, faults.KIND, inject)
+            self._fault_service = self._joined.service(name, faults.KIND, inject)
             if self.lockstep != "off":
                 stamped = self.lockstep == "stamped"
                 try:

@@ -9,8 +9,8 @@ from seatrial.errors import unknown
 from seatrial.links.vehicle_sensors import Sensors
 from seatrial.model.faults.catalogue import FAILURES
 
-from .dds.services import Call
 from .thrusters import Actuator
+from .transport import Call
 
 KIND = "rcl_interfaces/srv/SetParameters"
 _STRING = 4

@@ -9,7 +9,7 @@ from seatrial.errors import InputError, unknown
 from seatrial.links.interruption import Interruption
 from seatrial.links.watchdog import Watchdog
 
-from .dds.watched import Watched
+from .watched import Watched
 
 _POLL_S = 0.0002
 _SETTLED_S = 1.0

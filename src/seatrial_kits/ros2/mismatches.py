@@ -6,44 +6,20 @@ DDS says nothing of them to anybody. Of each the link says once what it is, and 
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterator, Mapping
-from typing import Any, NamedTuple
+from collections.abc import Callable, Mapping
 
-from .dds.definitions import dds_name
-from .dds.participant import Participant
-from .topics import PUBLISHED
+from .topics import CLOCK
+from .transport import Endpoint, Transport
 
 _EVERY_S = 0.5
 """Wall time between two looks."""
-_MOST = 200
-_CLOCK = PUBLISHED["clock"].name
-
-
-class Endpoint(NamedTuple):
-    """A reader or writer of somebody, as it was announced."""
-
-    topic: str
-    kind: str
-    """The type's name in DDS."""
-    reliability: Any
-    durability: Any
-    is_ours: bool
-    """Whether this process has it."""
 
 
 class Mismatches:
     """Looks at all endpoints of the domain; ``say`` is notified of those that do not fit."""
 
-    def __init__(self, participant: Participant, say: Callable[[str], None]) -> None:
-        from cyclonedds.builtin import (
-            BuiltinDataReader,
-            BuiltinTopicDcpsPublication,
-            BuiltinTopicDcpsSubscription,
-        )
-
-        self._tell, self._next = say, 0.0
-        topics = BuiltinTopicDcpsPublication, BuiltinTopicDcpsSubscription
-        self._announced = [BuiltinDataReader(participant.dds, topic) for topic in topics]
+    def __init__(self, transport: Transport, say: Callable[[str], None]) -> None:
+        self._transport, self._tell, self._next = transport, say, 0.0
         self._known: tuple[set[Endpoint], set[Endpoint]] = (set(), set())
         """Publishers, and subscribers."""
         self._said: set[str] = set()
@@ -59,31 +35,28 @@ class Mismatches:
         if time.monotonic() < self._next:
             return
         self._next = time.monotonic() + _EVERY_S
-        for reader, known in zip(self._announced, self._known, strict=True):
-            known |= set(_taken(reader))
+        announced = self._transport.endpoints(read, written)
+        for found, known in zip(announced, self._known, strict=True):
+            known |= set(found)
         for endpoint in self._known[0]:
             if endpoint.topic in read:
                 self._compare(endpoint, "a publisher", read[endpoint.topic])
-            if endpoint.topic == _CLOCK and not endpoint.is_ours and _CLOCK in written:
-                self._say(f"{_CLOCK}: another program publishes it too: nodes see two clocks")
+            if endpoint.topic == CLOCK and not endpoint.is_ours and CLOCK in written:
+                self._say(f"{CLOCK}: another program publishes it too: nodes see two clocks")
         for endpoint in self._known[1]:
             if endpoint.topic in written:
                 kept = endpoint.topic in latched
                 self._compare(endpoint, "a subscriber", written[endpoint.topic], latched=kept)
 
     def _compare(self, endpoint: Endpoint, who: str, kind: str, *, latched: bool = True) -> None:
-        from cyclonedds.core import Policy
-
         name = endpoint.topic
-        if endpoint.kind != dds_name(kind):
-            found = endpoint.kind.replace("::dds_::", "/").replace("::", "/")
+        if endpoint.kind != kind:
             self._say(
-                f"{name}: {who} has the type {found.removesuffix('_')}, {kind} is needed: they do "
-                "not match"
+                f"{name}: {who} has the type {endpoint.kind}, {kind} is needed: they do not match"
             )
-        elif who == "a publisher" and endpoint.reliability == Policy.Reliability.BestEffort:
+        elif who == "a publisher" and endpoint.is_best_effort:
             self._say(f"{name}: {who} is best effort, reliable is needed: they do not match")
-        elif not latched and endpoint.durability != Policy.Durability.Volatile:
+        elif not latched and endpoint.is_latched:
             self._say(
                 f"{name}: {who} asks for transient local, which this topic is not: make it "
                 "volatile, or they do not match"
@@ -93,13 +66,3 @@ class Mismatches:
         if what not in self._said:
             self._said.add(what)
             self._tell(what)
-
-
-def _taken(reader: Any) -> Iterator[Endpoint]:
-    from cyclonedds.core import Policy
-
-    for each in reader.take(_MOST):
-        if each.sample_info.valid_data:
-            quality = each.qos[Policy.Reliability], each.qos[Policy.Durability]
-            ours = str(each.participant_key) in Participant.of_this_process
-            yield Endpoint(each.topic_name.removeprefix("rt"), each.type_name, *quality, ours)

@@ -9,13 +9,13 @@ from typing import Any
 from seatrial.model.component import NS
 
 from .bag import Bag
-from .dds.packing import packed
-from .dds.participant import Durability, Participant, Writer
 from .description import urdf
+from .messages.packing import packed
 from .ports import Ros2Ports
 from .published import BASE, MEASURED, Fields, Here, leg, measured, odometry, places, transforms
 from .surroundings import Traffic
 from .topics import LATCHED, PUBLISHED, Names
+from .transport import Durability, Transport, Writer
 
 _OVERDUE = 1.5
 """Periods of a sensor after which a measurement that did not change is written again."""
@@ -30,8 +30,8 @@ class Outlet:
     wakes has been sent all else.
     """
 
-    def __init__(self, participant: Participant, names: Names) -> None:
-        self._participant, self._names = participant, names
+    def __init__(self, transport: Transport, names: Names, say: Callable[[str], None]) -> None:
+        self._transport, self._names, self._say = transport, names, say
         self._writers: dict[str, Writer | None] = {}
         self._last: dict[str, tuple[Fields, int]] = {}
         self._truth_ns, self._leg = -(10**18), 0
@@ -90,7 +90,7 @@ class Outlet:
     def matches(self) -> int:
         """Return the number of readers of all topics."""
         made = (each for each in self._writers.values() if each is not None)
-        return sum(len(each.dds.get_matched_subscriptions()) for each in made)
+        return sum(each.readers for each in made)
 
     def _due(self, link: Ros2Ports, here: Here) -> Iterator[tuple[str, Fields]]:
         now = here.now_ns
@@ -126,13 +126,19 @@ class Outlet:
 
     def _writer(self, key: str) -> Writer | None:
         if key not in self._writers:
-            topic = PUBLISHED[key]
-            name = self._names.of(key, topic)
-            durability: Durability = "latched" if key in LATCHED else "volatile"
-            self._writers[key] = (
-                None if name is None else self._participant.writer(name, topic.kind, durability)
-            )
+            self._writers[key] = self._made(key)
         return self._writers[key]
+
+    def _made(self, key: str) -> Writer | None:
+        topic = PUBLISHED[key]
+        name = self._names.of(key, topic)
+        if name is None:
+            return None
+        if lacking := self._transport.lacks(topic.kind):
+            self._say(f"{name} is not written: {lacking}")
+            return None
+        durability: Durability = "latched" if key in LATCHED else "volatile"
+        return self._transport.writer(name, topic.kind, durability)
 
 
 def _inputs(link: Ros2Ports, key: str) -> Callable[[list[Any]], Any]:

@@ -16,9 +16,9 @@ from seatrial.plugins import service
 from seatrial.sim.clock import Pacer
 from seatrial.trial.records.run_folder import Run
 
-from .dds.definitions import INSTALL, type_store
-from .dds.packing import packed
-from .dds.participant import Participant
+from .joining import join
+from .messages.definitions import INSTALL, type_store
+from .messages.packing import packed
 from .topics import LATCHED, PUBLISHED
 
 _CLOCK = PUBLISHED["clock"]
@@ -94,12 +94,10 @@ def _with_clock(messages: Iterator[Message]) -> Iterator[Message]:
 def _play(
     topics: dict[str, str], messages: Iterator[Message], stop_requested: Callable[[], int]
 ) -> int:
-    participant, written = Participant(-1), 0
+    transport, written = join(-1, "/seatrial_play"), 0
     try:
         writers = {
-            topic: participant.writer(
-                topic, kind, "latched" if topic.endswith(_KEPT) else "volatile"
-            )
+            topic: transport.writer(topic, kind, "latched" if topic.endswith(_KEPT) else "volatile")
             for topic, kind in topics.items()
         }
         time.sleep(_MET_S)
@@ -115,5 +113,5 @@ def _play(
             writers[topic].write(data)
             written += 1
     finally:
-        participant.close()
+        transport.close()
     return written

@@ -23,7 +23,8 @@ from seatrial.model.sampled import Sampled
 from seatrial.model.terminals import ORDERED
 from seatrial.physics.thrust_curve import COEFFICIENTS
 
-from .dds.participant import HIGHEST_DOMAIN
+from .joining import TRANSPORTS
+from .reach import HIGHEST_DOMAIN
 from .topics import check_namespace, read_topics
 
 CHANNELS = tuple(f"ch{number}" for number in range(1, 17))
@@ -53,7 +54,14 @@ class Ros2Ports(Logging, Reachable, TrueMotion, Sampled):
         "", "1", "before odom, base_link and frames of sensors: of one of several vehicles"
     )
     domain = Parameter(
-        -1.0, "1", "domain of DDS; -1: ROS_DOMAIN_ID, else 0", min=-1.0, max=float(HIGHEST_DOMAIN)
+        -1.0, "1", "domain of ROS; -1: ROS_DOMAIN_ID, else 0", min=-1.0, max=float(HIGHEST_DOMAIN)
+    )
+    transport = Parameter(
+        "auto",
+        "1",
+        "DDS itself, or a node of rclpy; auto: rclpy of a sourced workspace whose middleware is "
+        "another than rmw_cyclonedds_cpp",
+        choices=TRANSPORTS,
     )
     topics = Parameter(
         "", "1", "KEY TOPIC of topics with other names, or 'off'; with ;", check=read_topics

@@ -11,17 +11,17 @@ from seatrial.links.interruption import Interruption
 from seatrial.links.watchdog import Waiting
 from seatrial.physics.craft.kinematics import to_ned
 
-from .dds.action import StepsAction
-from .dds.participant import Participant
-from .dds.services import Call, Handler, Service
+from .action import GOAL, StepsAction
 from .frames import enu
 from .ports import Ros2Ports
 from .published import MAP, pose
+from .transport import Call, Handler, Transport
 
 PLAYING, PAUSED = 1, 2
 UNSUPPORTED, OK, NOT_FOUND, INCORRECT_STATE, FAILED = range(5)
 """Results of the standard."""
 _ALREADY = 101
+_PACKAGE = "simulation_interfaces"
 FEATURES = {
     "ENTITY_STATE_GETTING": 10,
     "SIMULATION_STATE_GETTING": 24,
@@ -51,7 +51,7 @@ class Simulator:
     RESULT_FEATURE_UNSUPPORTED, and a sentence.
     """
 
-    def __init__(self, participant: Participant, name: str, link: Ros2Ports, entity: str) -> None:
+    def __init__(self, transport: Transport, name: str, link: Ros2Ports, entity: str) -> None:
         self._link, self._entity = link, entity
         self.paused = False
         self.paused_s = 0.0
@@ -69,11 +69,19 @@ class Simulator:
             "ResetSimulation": _unsupported("a run is begun again by seatrial run"),
             **dict.fromkeys(_OF_THE_RIG, _unsupported("vehicles and world are those of the rig")),
         }
+        offered = {kind: transport.lacks(f"{_PACKAGE}/srv/{kind}") for kind in handlers}
+        action = transport.lacks(GOAL)
+        self.lacking = [why for why in (*offered.values(), action) if why]
+        """Why services are missing: the workspace has an older package, or none."""
         self._services = [
-            Service(participant, f"{name}/{_snake(kind)}", f"simulation_interfaces/srv/{kind}", act)
+            transport.service(f"{name}/{_snake(kind)}", f"{_PACKAGE}/srv/{kind}", act)
             for kind, act in handlers.items()
+            if not offered[kind]
         ]
-        self._action = StepsAction(participant, f"{name}/simulate_steps", self._begin, self._leave)
+        self._action: StepsAction | None = None
+        if not action:
+            steps = f"{name}/simulate_steps"
+            self._action = StepsAction(transport, steps, self._begin, self._leave)
         self._now_ns = 0
 
     def serve(self, now_ns: int) -> None:
@@ -81,7 +89,8 @@ class Simulator:
         self._now_ns = now_ns
         for service in self._services:
             service.serve()
-        self._action.serve(now_ns)
+        if self._action is not None:
+            self._action.serve(now_ns)
 
     def stand_still(self, now_ns: int, others: Callable[[], None]) -> None:
         """Stand still while it is paused and no step is asked for; ``others`` are served too."""

@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING, Any
 from seatrial.errors import InputError, unknown
 from seatrial.testing.waiting import Queue
 
-from .dds.packing import packed
-from .dds.participant import Participant, Writer
+from .joining import join
+from .messages.packing import packed
 from .topics import ACTUATORS, COMMANDED, PUBLISHED
+from .transport import Writer
 
 if TYPE_CHECKING:
     from seatrial.api.simulation import Simulation
@@ -28,20 +29,19 @@ class Ros2Node:
     def __init__(self, bench: Simulation, name: str) -> None:
         domain, _, namespace = bench.get(f"{name}.reached_at").partition("://")[2].partition("/")
         self._bench, self._namespace = bench, f"/{namespace}" if namespace else ""
-        self._participant = Participant(int(domain))
+        self._transport = join(int(domain), "/seatrial_test")
         self._queues: dict[str, Queue[Any]] = {}
         self._writers: dict[str, Writer] = {}
 
     def listen(self, topic: str, kind: str = "") -> Queue[Any]:
         """Return what arrives on a topic from now on."""
         if topic not in self._queues:
-            made = self._participant.reader(self._full(topic), kind or _kind(topic), _DEPTH)
+            made = self._transport.reader(self._full(topic), kind or _kind(topic), _DEPTH)
             queue: Queue[Any] = Queue(self._bench, lambda each: type(each).__name__)
             self._queues[topic] = queue
 
             def take(_: object) -> None:
-                taken = made.take(_DEPTH)
-                queue.items += [each.message for each in taken if each.sample_info.valid_data]
+                queue.items += [each.message for each in made.take(_DEPTH)]
 
             self._bench.observe(take)
         return self._queues[topic]
@@ -64,7 +64,7 @@ class Ros2Node:
     def publish(self, topic: str, kind: str = "", **fields: Any) -> None:
         """Write a message; fields that are not given are 0, empty or False."""
         if topic not in self._writers:
-            self._writers[topic] = self._participant.writer(self._full(topic), kind or _kind(topic))
+            self._writers[topic] = self._transport.writer(self._full(topic), kind or _kind(topic))
         writer = self._writers[topic]
         writer.write(packed(writer.kind, fields))
 

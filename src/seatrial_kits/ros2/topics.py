@@ -48,6 +48,7 @@ PUBLISHED: Mapping[str, Topic] = {
     "diagnostics": Topic("/diagnostics", "diagnostic_msgs/msg/DiagnosticArray"),
 }
 """Topics that the link writes."""
+CLOCK = PUBLISHED["clock"].name
 LATCHED = ("tf_static", "description", "leg")
 """Those that late readers get too."""
 

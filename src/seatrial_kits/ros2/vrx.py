@@ -12,9 +12,12 @@ from seatrial.model.component import NS, Input, Output, Parameter, terminal
 from seatrial.model.sampled import Sampled
 from seatrial.model.waypoints import MOST, Waypoints
 
-from .dds.packing import packed
-from .dds.participant import HIGHEST_DOMAIN, Participant, Writer
 from .frames import quaternion
+from .joining import TRANSPORTS, join
+from .messages.packing import packed
+from .reach import HIGHEST_DOMAIN
+from .topics import token
+from .transport import Transport, Writer
 from .vrx_scores import Gates, Score, StationKeeping, Wayfinding
 
 GOALS = tuple(f"goal{number}" for number in range(1, MOST + 1))
@@ -53,7 +56,7 @@ class VrxTask(Waypoints, Sampled):
     """
 
     rolls_back = False
-    transient = Sampled.transient | {"_participant", "_writers"}
+    transient = Sampled.transient | {"_joined", "_writers"}
     exercised: ClassVar = {"topics": "off", "initial": 0.0, "ready": 0.0}
 
     period = Parameter(0.02, "s", "sample period", min=1e-6)
@@ -64,8 +67,9 @@ class VrxTask(Waypoints, Sampled):
     running = Parameter(300.0, "s", "longest time that it runs", min=0.0)
     topics = Parameter("on", "1", "whether nodes are given goals and scores", choices=("on", "off"))
     domain = Parameter(
-        -1.0, "1", "domain of DDS; -1: ROS_DOMAIN_ID, else 0", min=-1.0, max=float(HIGHEST_DOMAIN)
+        -1.0, "1", "domain of ROS; -1: ROS_DOMAIN_ID, else 0", min=-1.0, max=float(HIGHEST_DOMAIN)
     )
+    transport = Parameter("auto", "1", "as of the link ros2", choices=TRANSPORTS)
     latitude = Parameter(
         0.0, "rad", "of the origin, WGS 84", min=-1.5707964, max=1.5707964, role="home"
     )
@@ -86,7 +90,7 @@ class VrxTask(Waypoints, Sampled):
 
     def __init__(self, name: str = "component") -> None:
         super().__init__(name)
-        self._participant: Participant | None = None
+        self._joined: Transport | None = None
 
     def reset(self, t: float) -> None:
         """Set the goals, and join the domain."""
@@ -110,12 +114,12 @@ class VrxTask(Waypoints, Sampled):
         if self.topics == "off":
             return
         try:
-            self._participant = Participant(round(self.domain))
+            self._joined = join(round(self.domain), f"/vrx_{token(self.name)}", self.transport)
         except InputError as error:
             raise InputError(f"{self.name}: {error}") from None
         kinds = {f"{self.task}/{name}": kind for name, kind in _TOPICS[self.task].items()}
         for name, kind in {"task/info": _INFO, **kinds}.items():
-            self._writers[name] = self._participant.writer(f"/vrx/{name}", kind)
+            self._writers[name] = self._joined.writer(f"/vrx/{name}", kind)
 
     def sample(self, t: float, k: int) -> None:
         """Publish the score until now."""
@@ -140,9 +144,9 @@ class VrxTask(Waypoints, Sampled):
 
     def close(self) -> None:
         """Leave the domain."""
-        if self._participant is not None:
-            self._participant.close()
-        self._participant = None
+        if self._joined is not None:
+            self._joined.close()
+        self._joined = None
 
     # ------------------------------------------------------------------ inside
 

@@ -16,7 +16,7 @@ for repository in ament/{ament_cmake,ament_package,ament_index} ros2/{ament_cmak
     ros2/{rmw_implementation,rmw_dds_common,rosidl,rosidl_defaults,rosidl_typesupport,rosidl_typesupport_fastrtps} \
     ros2/{rosidl_python,rcl,rcl_interfaces,rcl_logging,rclpy,rmw_cyclonedds,common_interfaces,ros2_tracing} \
     ros2/{unique_identifier_msgs,libyaml_vendor,rpyutils,pybind11_vendor,python_cmake_module,rosidl_runtime_py} \
-    ros-simulation/simulation_interfaces; do
+    ros2/geometry2 ros-simulation/simulation_interfaces; do
     name=${repository##*/}
     from=${ROS2_SOURCES:+$ROS2_SOURCES/$name}
     [ -d "src/$name" ] || git clone -q --branch humble "${from:-https://github.com/$repository}" "src/$name"
@@ -28,12 +28,13 @@ fi
 touch src/rcl_logging/rcl_logging_spdlog/COLCON_IGNORE src/rcl_interfaces/test_msgs/COLCON_IGNORE
 touch src/common_interfaces/{common_interfaces,sensor_msgs_py}/COLCON_IGNORE
 for folder in src/ros2_tracing/*/; do [ "$folder" = src/ros2_tracing/tracetools/ ] || touch "$folder/COLCON_IGNORE"; done
+for folder in src/geometry2/*/; do [ "$folder" = src/geometry2/tf2_msgs/ ] || touch "$folder/COLCON_IGNORE"; done
 # Messages that no test has take most of the time.
-kept='msg/(Accel|Bool|EntityState|Float32|Float64|Header|Imu|NavSatFix|NavSatStatus|Odometry|Path|Point|Pose|PoseStamped'
-kept+='|PoseWithCovariance|Quaternion|Result|SimulationState|SimulatorFeatures|String|Transform|TransformStamped|Twist'
-kept+='|TwistStamped|TwistWithCovariance|Vector3|Wrench|WrenchStamped)\.'
-kept+='|srv/(GetEntityState|GetSimulationState|GetSimulatorFeatures|SetSimulationState|SpawnEntity|StepSimulation)\.'
-for file in src/common_interfaces/{std,geometry,nav,sensor}_msgs/CMakeLists.txt src/simulation_interfaces/CMakeLists.txt; do
+kept='msg/(Accel|BatteryState|Bool|Float32|Float64|FluidPressure|Header|Imu|JointState|LaserScan|MagneticField'
+kept+='|NavSatFix|NavSatStatus|Odometry|Path|Point|Pose|PoseArray|PoseStamped|PoseWithCovariance|Quaternion|Range'
+kept+='|String|Temperature|Transform|TransformStamped|Twist|TwistStamped|TwistWithCovariance'
+kept+='|TwistWithCovarianceStamped|Vector3|Wrench|WrenchStamped)\.'
+for file in src/common_interfaces/{std,geometry,nav,sensor}_msgs/CMakeLists.txt; do
     awk -v kept="$kept" '!/"(msg|srv|action)\// || $0 ~ kept' "$file" > "$file.kept" && mv "$file.kept" "$file"
     grep -q '"srv/' "$file" || sed -i '/\${srv_files}/d' "$file"
     sed -i '/\${action_files}/d' "$file"
@@ -41,7 +42,7 @@ done
 . v/bin/activate
 export RCL_LOGGING_IMPLEMENTATION=rcl_logging_noop MAKEFLAGS=-j2
 colcon build --merge-install --executor sequential --event-handlers console_cohesion- --packages-skip-build-finished \
-    --packages-up-to rclpy rmw_cyclonedds_cpp sensor_msgs nav_msgs geometry_msgs std_srvs simulation_interfaces rcl_logging_noop \
+    --packages-up-to rclpy rmw_cyclonedds_cpp sensor_msgs nav_msgs geometry_msgs std_srvs diagnostic_msgs tf2_msgs simulation_interfaces rcl_logging_noop \
     --cmake-args -DBUILD_TESTING=OFF -DCMAKE_BUILD_TYPE=Release -DTRACETOOLS_DISABLED=ON \
     -DRCL_LOGGING_IMPLEMENTATION=rcl_logging_noop -DPython3_EXECUTABLE="$work/v/bin/python3" \
     -DPYTHON_EXECUTABLE="$work/v/bin/python3" -DPython3_FIND_VIRTUALENV=FIRST

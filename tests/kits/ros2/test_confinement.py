@@ -8,7 +8,7 @@ import pytest
 
 _SHOW = """
 import json, os, socket, sys
-from seatrial_kits.ros2.dds.participant import Participant
+from seatrial_kits.ros2.joining import join
 
 def sockets():
     for name in os.listdir("/proc/self/fd"):
@@ -22,7 +22,7 @@ def sockets():
                 yield opened.getsockname()[0], device.rstrip(bytes(1)).decode()
 
 groups = open("/proc/net/igmp").read().count("0100FFEF")  # 239.255.0.1, the group of DDS
-participant = Participant(int(sys.argv[1]))
+participant = join(int(sys.argv[1]), "/seatrial", "dds")
 more = open("/proc/net/igmp").read().count("0100FFEF") - groups
 print(json.dumps([list(sockets()), more]))
 """

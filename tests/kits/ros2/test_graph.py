@@ -13,7 +13,7 @@ from cyclonedds.idl.types import array, bounded_str, sequence, uint8
 
 from seatrial import Simulation
 from seatrial.errors import InputError
-from seatrial_kits.ros2.dds.definitions import type_store
+from seatrial_kits.ros2.messages.definitions import type_store
 
 from . import peer
 from .peer import LATCHED, Node
@@ -69,13 +69,12 @@ def test_the_link_is_a_node_with_its_topics_and_services(domain, monkeypatch):
 
 ANNOUNCED = """
 import sys
-from seatrial_kits.ros2.graph import KIND, Graph
-from seatrial_kits.ros2.dds.packing import packed
-from seatrial_kits.ros2.dds.participant import Participant
+from seatrial_kits.ros2.messages.packing import packed
+from seatrial_kits.ros2.joining import join
 
-participant = Participant(int(sys.argv[1]))
+participant = join(int(sys.argv[1]), "/seatrial", "dds")
 participant.writer("/echo", "sensor_msgs/msg/Range")
-Graph(participant, "/seatrial").tell()
+participant.announce()
 print(packed("sensor_msgs/msg/Range", {"range": 2.0}).hex(), participant.identity.hex(), flush=True)
 sys.stdin.read()
 """

@@ -10,9 +10,9 @@ from scipy.spatial.transform import Rotation
 from seatrial import Simulation
 from seatrial.links.geodesy import Origin
 from seatrial_kits.ros2.component import Ros2
-from seatrial_kits.ros2.dds.packing import packed
-from seatrial_kits.ros2.dds.participant import Participant
 from seatrial_kits.ros2.instruments import Instruments
+from seatrial_kits.ros2.joining import join
+from seatrial_kits.ros2.messages.packing import packed
 from seatrial_kits.ros2.published import MEASURED, Here, measured
 from seatrial_kits.ros2.topics import COMMANDED, PUBLISHED, Names
 
@@ -21,7 +21,7 @@ class Ears:
     """Reads all topics of a vehicle from its first instant on."""
 
     def __init__(self, domain, vehicle, **settings):
-        self.participant = Participant(domain)
+        self.participant = join(domain, "/test", "dds")
         names = Names(vehicle, "")
         self.readers = {
             key: self.participant.reader(names.of(key, topic), topic.kind, 1000)
@@ -44,7 +44,7 @@ class Ears:
         self.writer.write(packed("geometry_msgs/msg/Twist", twist))
 
     def taken(self, key):
-        return [s.message for s in self.readers[key].take(1000) if s.sample_info.valid_data]
+        return [s.message for s in self.readers[key].take(1000)]
 
     def at_one_instant(self, *names):
         """Return signals, and take the step that writes them."""

@@ -5,8 +5,8 @@ import time
 import pytest
 
 from seatrial import Simulation
-from seatrial_kits.ros2.dds.packing import packed
-from seatrial_kits.ros2.dds.participant import Participant
+from seatrial_kits.ros2.joining import join
+from seatrial_kits.ros2.messages.packing import packed
 
 FLOAT = "std_msgs/msg/Float64"
 
@@ -20,7 +20,7 @@ def t200(command):
 
 @pytest.mark.parametrize("command", [0.1, 0.5, 0.9, -0.3, -0.7])
 def test_a_thrust_of_the_bluerov2_is_the_command_of_its_published_curve(domain, command):
-    participant = Participant(domain)
+    participant = join(domain, "/test", "dds")
     writer = participant.writer("/bluerov2/thrusters/t3/thrust", FLOAT)
     with Simulation(
         "sil",
@@ -29,7 +29,7 @@ def test_a_thrust_of_the_bluerov2_is_the_command_of_its_published_curve(domain, 
     ) as simulation:
         simulation.step(2)
         until = time.monotonic() + 10.0
-        while not writer.dds.get_matched_subscriptions() and time.monotonic() < until:
+        while not writer.readers and time.monotonic() < until:
             time.sleep(0.01)
         writer.write(packed(FLOAT, {"data": t200(command)}))
         time.sleep(0.05)

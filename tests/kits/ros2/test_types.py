@@ -6,9 +6,9 @@ import pytest
 from cyclonedds.idl import IdlStruct
 from rosbags.interfaces import Nodetype
 
-from seatrial_kits.ros2.dds.definitions import INTERFACES, dds_name, service_parts, type_store
 from seatrial_kits.ros2.dds.idl import sample_type
-from seatrial_kits.ros2.dds.packing import packed
+from seatrial_kits.ros2.messages.definitions import INTERFACES, dds_name, service_parts, type_store
+from seatrial_kits.ros2.messages.packing import packed
 from seatrial_kits.ros2.topics import COMMANDED, PUBLISHED
 
 from . import peer

@@ -1,1 +1,1 @@
-"""DDS as ROS 2 has it: participant, types and their definitions, services, actions."""
+"""DDS as ROS 2 has it: participant, readers and writers, services, announcements."""

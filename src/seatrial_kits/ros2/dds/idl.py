@@ -8,7 +8,7 @@ from __future__ import annotations
 from functools import cache
 from typing import Any
 
-from .definitions import dds_name, type_store
+from ..messages.definitions import dds_name, type_store
 
 _BASES = {
     "bool": "bool", "byte": "uint8", "char": "uint8", "octet": "uint8",

@@ -1,44 +1,28 @@
-"""Participant of a DDS domain: on the loopback interface alone unless other hosts are allowed."""
+"""DDS without ROS: a participant of a domain, by the package cyclonedds."""
 
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
-from typing import Any, ClassVar, Literal
+from collections.abc import Callable, Sequence
+from typing import Any, ClassVar
 
 from seatrial.errors import InputError, unknown
-from seatrial.links.hardware import network_allowed
 
-from .confinement import confined_sockets
-from .definitions import INSTALL
+from ..messages.definitions import INSTALL
+from ..reach import confined
+from ..transport import Durability, Sample
 from .idl import sample_type
 
-HIGHEST_DOMAIN = 232
-"""Domains above have no ports of their own."""
 SPOKEN = ("rmw_cyclonedds_cpp", "rmw_fastrtps_cpp", "rmw_fastrtps_dynamic_cpp", "rmw_connextdds")
 """Middlewares of ROS 2 that are DDS."""
-LOOPBACK = (
-    '<General><Interfaces><NetworkInterface address="127.0.0.1"/></Interfaces>'
-    "<AllowMulticast>false</AllowMulticast></General><Discovery>"
-    "<ParticipantIndex>auto</ParticipantIndex><MaxAutoParticipantIndex>60</MaxAutoParticipantIndex>"
-    '<Peers><Peer address="127.0.0.1"/></Peers></Discovery>'
-)
-"""What nodes must have in CYCLONEDDS_URI too, to be found without multicast."""
-_URI = "CYCLONEDDS_URI"
 _ENCLAVE = b"enclave=/;"
 """By which middlewares of ROS know a participant of theirs."""
-_spoken_in: set[int] = set()
-"""Processes in which a participant was made: this one, and one that it was forked from."""
-
-Durability = Literal["volatile", "latched"]
 
 
 class Participant:
-    """One participant; its topics by their names in ROS, ``/otter/imu/data``.
+    """One participant, with readers and writers.
 
-    ``domain`` below 0 is that of ROS_DOMAIN_ID, else 0. Raises InputError for a domain that
-    cannot be, a middleware that is no DDS, and without the package cyclonedds.
+    Raises InputError for a middleware that is no DDS, and without the package cyclonedds.
     """
 
     of_this_process: ClassVar[set[str]] = set()
@@ -51,10 +35,9 @@ class Participant:
         except ImportError:
             raise InputError(f"ROS 2 needs cyclonedds, which is not installed: {INSTALL}") from None
         _check_middleware()
-        _check_process()
-        self.domain = domain if domain >= 0 else _environment_domain()
+        self.domain = domain
         try:
-            with _configured(), confined_sockets(reaches_others()):
+            with confined(cyclone=True):
                 self.dds = DomainParticipant(self.domain, Qos(Policy.Userdata(_ENCLAVE)))
             self.of_this_process.add(str(self.dds.guid))
         except DDSException as error:
@@ -64,26 +47,24 @@ class Participant:
         self.writers: list[bytes] = []
         """Identifiers of all that it has, 16 bytes each."""
 
-    def writer(self, topic: str, kind: str, durability: Durability = "volatile") -> Writer:
-        """Return a writer of messages; see `Writer`."""
-        return Writer(self, topic, kind, durability)
+    def writer(
+        self, topic: str, kind: str, durability: Durability = "volatile", prefix: str = "rt"
+    ) -> DdsWriter:
+        """Return a writer of messages."""
+        return DdsWriter(self, topic, kind, durability, prefix)
 
-    def reader(self, topic: str, kind: str, depth: int = 10, prefix: str = "rt") -> Any:
+    def reader(self, topic: str, kind: str, depth: int = 10, prefix: str = "rt") -> DdsReader:
         """Return a reliable reader that keeps the newest ``depth`` messages."""
-        from cyclonedds.sub import DataReader
+        return DdsReader(self, topic, kind, depth, prefix)
 
-        made = DataReader(self.dds, self.topic(topic, kind, prefix), _quality("volatile", depth))
-        self.readers.append(made.guid.bytes)
-        return made
-
-    def arrivals(self, readers: Sequence[Any]) -> Callable[[], bool]:
+    def arrivals(self, readers: Sequence[DdsReader]) -> Callable[[], bool]:
         """Return what says whether any of the readers has messages that were not taken yet."""
         from cyclonedds.core import InstanceState, ReadCondition, SampleState, ViewState, WaitSet
 
         waiting = WaitSet(self.dds)
         for reader in readers:
             new = SampleState.NotRead | ViewState.Any | InstanceState.Any
-            waiting.attach(ReadCondition(reader, new))
+            waiting.attach(ReadCondition(reader.dds, new))
         return lambda: waiting.wait(0) > 0
 
     def topic(self, topic: str, kind: str, prefix: str = "rt") -> Any:
@@ -97,20 +78,11 @@ class Participant:
         self.dds.__del__()  # the package has no other way before the last reference is gone
 
 
-class Writer:
-    """Writes messages of one kind: reliable, so that readers of either reliability match.
-
-    ``latched`` is transient local, and keeps one: those who come later get it. A message that
-    readers are too slow for is dropped, and counted.
-    """
+class DdsWriter:
+    """Writes messages of one kind to DDS: a `Writer`."""
 
     def __init__(
-        self,
-        participant: Participant,
-        topic: str,
-        kind: str,
-        durability: Durability = "volatile",
-        prefix: str = "rt",
+        self, participant: Participant, topic: str, kind: str, durability: Durability, prefix: str
     ) -> None:
         from cyclonedds.core import DDSException
         from cyclonedds.pub import DataWriter
@@ -131,6 +103,38 @@ class Writer:
         except self._refused:
             self.dropped += 1
 
+    @property
+    def readers(self) -> int:
+        """Number of readers that match."""
+        return len(self.dds.get_matched_subscriptions())
+
+
+class DdsReader:
+    """Reads one topic of DDS: a `Reader`."""
+
+    def __init__(
+        self, participant: Participant, topic: str, kind: str, depth: int, prefix: str
+    ) -> None:
+        from cyclonedds.sub import DataReader
+
+        self.dds = DataReader(
+            participant.dds, participant.topic(topic, kind, prefix), _quality("volatile", depth)
+        )
+        participant.readers.append(self.dds.guid.bytes)
+
+    def take(self, most: int) -> list[Sample]:
+        """Return messages that have come since, each with its publisher."""
+        return [
+            Sample(each.message, each.sample_info.publication_handle)
+            for each in self.dds.take(most)
+            if each.sample_info.valid_data
+        ]
+
+    @property
+    def publishers(self) -> int:
+        """Number of publishers that match."""
+        return len(self.dds.get_matched_publications())
+
 
 def _quality(durability: Durability, depth: int) -> Any:
     from cyclonedds.core import Policy, Qos
@@ -145,48 +149,10 @@ def _quality(durability: Durability, depth: int) -> Any:
     )
 
 
-def _check_process() -> None:
-    """Raise InputError in a fork of a process that spoke DDS: its threads are not here."""
-    _spoken_in.add(os.getpid())
-    if len(_spoken_in) > 1:
-        raise InputError(
-            "this process was forked from one that speaks DDS, whose library cannot follow: run "
-            "the trial from a process of its own (seatrial run)"
-        )
-
-
 def _check_middleware() -> None:
     named = os.environ.get("RMW_IMPLEMENTATION", "")
     if named and named not in SPOKEN:
         raise InputError(
-            f"RMW_IMPLEMENTATION: {unknown('middleware', named, SPOKEN)}: this link speaks DDS"
+            f"RMW_IMPLEMENTATION: {unknown('middleware', named, SPOKEN)}: without an rclpy that "
+            "this Python can import the link speaks DDS"
         )
-
-
-def _environment_domain() -> int:
-    written = os.environ.get("ROS_DOMAIN_ID", "") or "0"
-    if not written.isdecimal() or int(written) > HIGHEST_DOMAIN:
-        raise InputError(f"ROS_DOMAIN_ID is {written!r}, allowed 0 to {HIGHEST_DOMAIN}")
-    return int(written)
-
-
-def reaches_others() -> bool:
-    """Return whether other hosts are reached: allowed, and not narrowed by ROS' own variables."""
-    narrowed = os.environ.get("ROS_LOCALHOST_ONLY") == "1" or os.environ.get(
-        "ROS_AUTOMATIC_DISCOVERY_RANGE", ""
-    ).upper() in ("LOCALHOST", "OFF")
-    return network_allowed() and not narrowed
-
-
-@contextmanager
-def _configured() -> Iterator[None]:
-    """Make CycloneDDS read its configuration, which it does as the first participant comes."""
-    before = os.environ.get(_URI)
-    if not reaches_others():
-        os.environ[_URI] = LOOPBACK
-    try:
-        yield
-    finally:
-        os.environ.pop(_URI, None)
-        if before is not None:
-            os.environ[_URI] = before

@@ -3,42 +3,31 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from typing import Any
 
-from .definitions import service_parts
-from .packing import packed
-from .participant import Participant, Writer
+from ..messages.definitions import service_parts
+from ..messages.packing import packed
+from ..transport import Call, Handler
+from .participant import Participant
 
 _MOST = 10
 """Calls of one service that are answered at once; more wait."""
 
 
-@dataclass(frozen=True)
-class Call:
-    """One call of a service, to be answered once, now or later."""
-
-    request: Any
-    answer: Callable[[Mapping[str, Any]], None]
-
-
-Handler = Callable[[Call], None]
-
-
-class Service:
+class DdsService:
     """A service ``name`` of the type ``kind``; ``handler`` answers each call."""
 
     def __init__(self, participant: Participant, name: str, kind: str, handler: Handler) -> None:
         asked, self._answered = service_parts(kind)
         self._reader = participant.reader(f"{name}Request", asked, prefix="rq")
-        self._writer = Writer(participant, f"{name}Reply", self._answered, prefix="rr")
+        self._writer = participant.writer(f"{name}Reply", self._answered, prefix="rr")
         self._handler = handler
 
     def serve(self) -> None:
         """Answer the calls that have come; what is no request is dropped."""
-        for sample in self._reader.take(_MOST):
-            if sample.sample_info.valid_data and sample.message is not None:
-                self._handler(Call(sample.message, self._answering(sample.message)))
+        for request, _ in self._reader.take(_MOST):
+            if request is not None:
+                self._handler(Call(request, self._answering(request)))
 
     def _answering(self, request: Any) -> Callable[[Mapping[str, Any]], None]:
         header = {

@@ -6,9 +6,9 @@ from collections import deque
 from collections.abc import Callable
 from typing import Any
 
-from .definitions import type_store
-from .message import is_finite, stamp_ns
-from .participant import Participant
+from .messages.definitions import type_store
+from .messages.message import is_finite, stamp_ns
+from .transport import Transport
 
 DEPTH = 10
 """Messages taken in one step: of a flood, the newest."""
@@ -26,14 +26,14 @@ class Watched:
 
     def __init__(
         self,
-        participant: Participant,
+        transport: Transport,
         name: str,
         kind: str,
         timeout: float,
         say: Callable[[str], None],
     ) -> None:
         self.name, self.kind, self.timeout = name, kind, timeout
-        self.reader = participant.reader(name, kind, DEPTH)
+        self.reader = transport.reader(name, kind, DEPTH)
         self.refused = self.late = 0
         self._reported: set[str] = set()
         self._say = say
@@ -55,7 +55,7 @@ class Watched:
     @property
     def publishers(self) -> int:
         """Number of publishers that match."""
-        return len(self.reader.get_matched_publications())
+        return self.reader.publishers
 
     def take_newest(self, now: float, now_ns: int) -> None:
         """Take in what has arrived; the newest is the command, unless its stamp is too old."""
@@ -95,19 +95,16 @@ class Watched:
         return True
 
     def _take_in(self, now: float) -> None:
-        for sample in self.reader.take(DEPTH):
-            if not sample.sample_info.valid_data:
-                continue
-            publisher = sample.sample_info.publication_handle
-            if sample.message is None:
+        for message, publisher in self.reader.take(DEPTH):
+            if message is None:
                 self._refuse("messages that cannot be read are refused")
-            elif not is_finite(sample.message):
+            elif not is_finite(message):
                 self._refuse("numbers that are not finite are refused")
             elif publisher != self._owner and now - self._owned_at <= self.timeout:
                 self._refuse("a second publisher is refused: two command the same")
             else:
                 self._owner, self._owned_at = publisher, now
-                self._queue.append(sample.message)
+                self._queue.append(message)
 
     def _refuse(self, why: str) -> None:
         self.refused += 1

@@ -6,12 +6,11 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from .packing import packed
-from .participant import Participant, Writer
-from .services import Call, Service
+from .messages.packing import packed
+from .transport import Call, Transport
 
 _PACKAGE = "simulation_interfaces"
-_SENT, _ASKED = (f"{_PACKAGE}/action/SimulateSteps_{part}" for part in ("SendGoal", "GetResult"))
+GOAL, _ASKED = (f"{_PACKAGE}/action/SimulateSteps_{part}" for part in ("SendGoal", "GetResult"))
 _FEEDBACK = f"{_PACKAGE}/msg/SimulateSteps_FeedbackMessage"
 _CANCEL = "action_msgs/srv/CancelGoal"
 _STATUS = "action_msgs/msg/GoalStatusArray"
@@ -51,7 +50,7 @@ class StepsAction:
 
     def __init__(
         self,
-        participant: Participant,
+        transport: Transport,
         name: str,
         begin: Callable[[int, Callable[[int, Result], None]], Result | None],
         cancel: Callable[[], Result],
@@ -59,12 +58,12 @@ class StepsAction:
         self._begin, self._cancel = begin, cancel
         base = f"{name}/_action"
         self._services = [
-            Service(participant, f"{base}/send_goal", _SENT, self._on_goal),
-            Service(participant, f"{base}/get_result", _ASKED, self._on_result),
-            Service(participant, f"{base}/cancel_goal", _CANCEL, self._on_cancel),
+            transport.service(f"{base}/send_goal", GOAL, self._on_goal),
+            transport.service(f"{base}/get_result", _ASKED, self._on_result),
+            transport.service(f"{base}/cancel_goal", _CANCEL, self._on_cancel),
         ]
-        self._feedback = Writer(participant, f"{base}/feedback", _FEEDBACK)
-        self._status = Writer(participant, f"{base}/status", _STATUS, "latched")
+        self._feedback = transport.writer(f"{base}/feedback", _FEEDBACK)
+        self._status = transport.writer(f"{base}/status", _STATUS, "latched")
         self._goals: list[Goal] = []
         self._now_ns = 0
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from functools import cache
 
-from .dds.definitions import type_store
-from .dds.packing import packed
-from .dds.participant import Participant, Writer
+from ..messages.definitions import type_store
+from ..messages.packing import packed
+from .participant import Participant
 
 KIND = "rmw_dds_common/msg/ParticipantEntitiesInfo"
 _GID = "rmw_dds_common/msg/Gid"
@@ -22,7 +22,7 @@ class Graph:
     def __init__(self, participant: Participant, name: str) -> None:
         self._participant = participant
         self._namespace, _, self._name = name.rpartition("/")
-        self._writer = Writer(participant, "ros_discovery_info", KIND, "latched", prefix="")
+        self._writer = participant.writer("ros_discovery_info", KIND, "latched", prefix="")
         self._told = 0
 
     def tell(self) -> None:

@@ -1,0 +1,60 @@
+"""Choice of the transport by which the link joins a domain."""
+
+from __future__ import annotations
+
+import os
+from importlib.util import find_spec
+
+from seatrial.errors import InputError
+
+from .dds.dds_transport import DdsTransport
+from .rcl.node import RclpyNode
+from .reach import domain_of
+from .transport import Transport
+
+TRANSPORTS = ("auto", "dds", "rclpy")
+_spoken_in: set[int] = set()
+"""Processes in which a domain was joined: this one, and one that it was forked from."""
+
+
+def join(domain: int, node: str, transport: str = "auto") -> Transport:
+    """Join a domain as the node ``node``, a name in full; a domain below 0: `domain_of`.
+
+    ``auto`` is DDS, but rclpy where a workspace is sourced that this Python can import, and whose
+    middleware is another than rmw_cyclonedds_cpp.
+
+    Raises InputError for a domain or middleware that cannot be, and without the packages.
+    """
+    number = domain_of(domain)
+    _check_process()
+    if transport == "rclpy" or (transport == "auto" and _prefers_rclpy()):
+        missing = _why_no_rclpy()
+        if missing:
+            raise InputError(f"rclpy cannot be imported: {missing}; source a workspace of ROS 2")
+        return RclpyNode(number, node)
+    return DdsTransport(number, node)
+
+
+def _prefers_rclpy() -> bool:
+    if os.environ.get("RMW_IMPLEMENTATION") == "rmw_cyclonedds_cpp" and find_spec("cyclonedds"):
+        return False
+    return not _why_no_rclpy()
+
+
+def _why_no_rclpy() -> str:
+    """Return why rclpy cannot be imported, empty if it can: it may be of another Python."""
+    try:
+        import rclpy  # noqa: F401
+    except ImportError as error:
+        return str(error).partition("\n")[0]
+    return ""
+
+
+def _check_process() -> None:
+    """Raise InputError in a fork of a process that joined: a middleware's threads are not here."""
+    _spoken_in.add(os.getpid())
+    if len(_spoken_in) > 1:
+        raise InputError(
+            "this process was forked from one that speaks DDS, whose library cannot follow: run "
+            "the trial from a process of its own (seatrial run)"
+        )

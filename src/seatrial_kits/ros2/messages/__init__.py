@@ -1,0 +1,1 @@
+"""Messages: their definitions, and their bytes."""
