@@ -41,7 +41,7 @@ _PILOTED = ("piloted_pulse", "piloted_share", "piloted_angle")
 
 
 class Ros2(Ros2Ports):
-    """A vehicle among the nodes of ROS 2, over DDS: no ROS installation is needed.
+    """A vehicle among the nodes of ROS 2, over DDS without a ROS installation, or over rclpy.
 
     Every ``period`` it writes the clock, the truth and what sensors measured. Topics are below
     ``/NAMESPACE``, unless ``topics`` names them otherwise (`topics`, `published`).
@@ -67,7 +67,7 @@ class Ros2(Ros2Ports):
     It cannot be rolled back: what was written has been read.
 
     Raises InputError at the start for a domain that cannot be joined, a middleware that is no
-    DDS, and without the packages cyclonedds and rosbags.
+    DDS where rclpy cannot be had, and without the packages cyclonedds and rosbags.
     """
 
     rolls_back = False
@@ -250,7 +250,10 @@ class Ros2(Ros2Ports):
             return
         self._diagnosed_ns, self._diagnosed = now_ns + NS, self.verdicts
         acting = {} if self._faults is None else self._faults.acting
-        self._outlet.put("diagnostics", diagnostics(self, self._names, now_ns, acting), now_ns)
+        over = "" if self._joined is None else self._joined.title
+        self._outlet.put(
+            "diagnostics", diagnostics(self, self._names, now_ns, acting, over), now_ns
+        )
 
     def _look(self) -> None:
         if self._commands is not None and self._lockstep is None and self._commands.arrived():

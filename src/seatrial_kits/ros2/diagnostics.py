@@ -24,12 +24,17 @@ _FAILED = ("broken", "missed")
 
 
 def diagnostics(
-    link: Ros2Ports, names: Names, now_ns: int, acting: Mapping[str, str]
+    link: Ros2Ports, names: Names, now_ns: int, acting: Mapping[str, str], over: str
 ) -> Mapping[str, Any]:
-    """Return what commands the vehicle, what was refused, which faults act, and the criteria."""
+    """Return what commands the vehicle ``over`` a transport, what was refused, faults, criteria."""
     vehicle = names.namespace.removeprefix("/")
     failed = {unit: fault for unit, fault in acting.items() if fault != NONE}
-    counted = {"source": link.source, "refused": link.refused, "late": link.late}
+    counted = {
+        "source": link.source,
+        "refused": link.refused,
+        "late": link.late,
+        "transport": over,
+    }
     spoilt = link.refused or link.late
     return {
         "header": {"stamp": now_ns},

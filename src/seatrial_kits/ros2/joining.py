@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from importlib.util import find_spec
+from pathlib import Path
 
 from seatrial.errors import InputError
 
@@ -13,6 +14,8 @@ from .reach import domain_of
 from .transport import Transport
 
 TRANSPORTS = ("auto", "dds", "rclpy")
+_PACKAGES = "share/ament_index/resource_index/packages"
+"""Where a workspace lists its packages."""
 _spoken_in: set[int] = set()
 """Processes in which a domain was joined: this one, and one that it was forked from."""
 
@@ -30,7 +33,7 @@ def join(domain: int, node: str, transport: str = "auto") -> Transport:
     if transport == "rclpy" or (transport == "auto" and _prefers_rclpy()):
         missing = _why_no_rclpy()
         if missing:
-            raise InputError(f"rclpy cannot be imported: {missing}; source a workspace of ROS 2")
+            raise InputError(f"rclpy cannot be used: {missing}: source a workspace of ROS 2")
         return RclpyNode(number, node)
     return DdsTransport(number, node)
 
@@ -42,11 +45,18 @@ def _prefers_rclpy() -> bool:
 
 
 def _why_no_rclpy() -> str:
-    """Return why rclpy cannot be imported, empty if it can: it may be of another Python."""
+    """Return why rclpy cannot be had, empty if it can.
+
+    It may be of another Python. A middleware that is not there ends the process as rclpy comes.
+    """
+    named = os.environ.get("RMW_IMPLEMENTATION", "")
+    workspace = filter(None, os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep))
+    if named and not any(Path(folder, _PACKAGES, named).is_file() for folder in workspace):
+        return f"no sourced workspace has {named}, which RMW_IMPLEMENTATION names"
     try:
         import rclpy  # noqa: F401
     except ImportError as error:
-        return str(error).partition("\n")[0]
+        return f"{error}".partition("\n")[0]
     return ""
 
 

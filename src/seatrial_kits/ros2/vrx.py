@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import math
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, ClassVar
@@ -20,6 +21,7 @@ from .topics import token
 from .transport import Transport, Writer
 from .vrx_scores import Gates, Score, StationKeeping, Wayfinding
 
+_LOGGER = logging.getLogger("seatrial.ros2")
 GOALS = tuple(f"goal{number}" for number in range(1, MOST + 1))
 _TASKS: Mapping[str, Callable[[Sequence[Any], Sequence[float]], Score]] = {
     "stationkeeping": StationKeeping,
@@ -119,7 +121,10 @@ class VrxTask(Waypoints, Sampled):
             raise InputError(f"{self.name}: {error}") from None
         kinds = {f"{self.task}/{name}": kind for name, kind in _TOPICS[self.task].items()}
         for name, kind in {"task/info": _INFO, **kinds}.items():
-            self._writers[name] = self._joined.writer(f"/vrx/{name}", kind)
+            if lacking := self._joined.lacks(kind):
+                _LOGGER.warning("%s: /vrx/%s is not written: %s", self.name, name, lacking)
+            else:
+                self._writers[name] = self._joined.writer(f"/vrx/{name}", kind)
 
     def sample(self, t: float, k: int) -> None:
         """Publish the score until now."""
@@ -166,8 +171,9 @@ class VrxTask(Waypoints, Sampled):
             messages["wayfinding/min_errors"] = {"data": errors}
             messages["wayfinding/mean_error"] = {"data": self._score.value}
         for name, fields in messages.items():
-            writer = self._writers[name]
-            writer.write(packed(writer.kind, fields))
+            if name in self._writers:
+                writer = self._writers[name]
+                writer.write(packed(writer.kind, fields))
 
     def _info(self, elapsed: float) -> list[Mapping[str, Any]]:
         """Return what VRX says of a task, as parameters of ROS."""

@@ -103,6 +103,8 @@ class Watched:
             elif publisher != self._owner and now - self._owned_at <= self.timeout:
                 self._refuse("a second publisher is refused: two command the same")
             else:
+                if not publisher and self.publishers > 1:
+                    self._tell("it has several publishers, whom rclpy does not tell apart")
                 self._owner, self._owned_at = publisher, now
                 self._queue.append(message)
 

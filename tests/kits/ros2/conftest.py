@@ -6,10 +6,15 @@ from pathlib import Path
 
 import pytest
 
+from seatrial_kits.ros2 import joining as ros2_joining
+
 from .peer import LOOPBACK
 
 _DOMAINS = iter(range(100))
 os.environ.pop("ROS_DISTRO", None)  # the types of the peer are those of Humble
+if os.environ.get("SEATRIAL_TEST_TRANSPORT") == "rclpy":  # test_rclpy.py
+    os.environ["RMW_IMPLEMENTATION"] = "rmw_cyclonedds_cpp"
+    ros2_joining._prefers_rclpy = lambda: True
 
 
 @pytest.fixture(scope="module")

@@ -1,13 +1,15 @@
 """A real rclpy, where there is one: the node of the tutorial sails the Otter, twice alike.
 
-SEATRIAL_ROS2 names the folder of a built workspace: its ``v`` is the environment of its Python,
-its ``install`` what was built.
+SEATRIAL_ROS2 names the folder of a built workspace (`build_rclpy.sh`): its ``v`` is the environment
+of its Python, its ``install`` what was built. The link is on DDS, with nodes of rmw_cyclonedds, or a
+node of that rclpy, with nodes of rmw_fastrtps, whose services DDS alone cannot answer.
 """
 
 import math
 import os
 import re
 import subprocess
+import sys
 import time
 from pathlib import Path
 
@@ -15,7 +17,7 @@ import pytest
 
 from seatrial import Simulation
 from seatrial.trial.records.run_folder import load_run
-from tests.command import seatrial_process
+from tests.command import SEATRIAL
 
 from .peer import LOOPBACK
 
@@ -51,6 +53,7 @@ def call(kind, name, request):
 while len(seen) < 50:
     rclpy.spin_once(node)
 assert node.get_clock().now().nanoseconds > 0
+assert "seatrial" in node.get_node_names(), node.get_node_names()
 state = call(GetSimulationState, "/seatrial/get_simulation_state", GetSimulationState.Request())
 assert state.state.state == 1, state
 pause = SetSimulationState.Request()
@@ -119,24 +122,53 @@ rclpy.spin(Keeper())
 """
 
 
+# A simulation in a process of its own: it steps until a line comes, and says what became of the GNSS.
+STEPPED = """
+import select, sys, time
+from seatrial import Simulation
+
+set = {"autopilot.ros2.domain": int(sys.argv[1])}
+with Simulation("sil", choices={"vehicle": "otter", "autopilot": "ros2"}, set=set) as simulation:
+    while not select.select([sys.stdin], [], [], 0.0)[0]:
+        simulation.step(1)
+        time.sleep(0.005)
+    print(simulation.get("autopilot.ros2.failure.gps"))
+"""
+
+
+@pytest.fixture(params=["dds", "rclpy"])
+def transport(request):
+    return request.param
+
+
 @pytest.fixture
-def node(domain, tmp_path):
+def environment(domain, transport):
+    """A function: the environment of a program, in the workspace or not."""
+    middleware = {"dds": "rmw_cyclonedds_cpp", "rclpy": "rmw_fastrtps_cpp"}[transport]
+    of_ros = {
+        "RMW_IMPLEMENTATION": middleware,
+        "RCL_LOGGING_IMPLEMENTATION": "rcl_logging_noop",
+        "CYCLONEDDS_URI": LOOPBACK,
+        "ROS_LOCALHOST_ONLY": str(int(transport == "rclpy")),
+        "ROS_DOMAIN_ID": str(domain),
+    }
+    plain = {k: v for k, v in os.environ.items() if not k.startswith("PYTHON")} | of_ros
+    shell = f". {ROS}/v/bin/activate && . {ROS}/install/setup.bash && env -0"
+    listed = subprocess.run(["bash", "-c", shell], env=plain, capture_output=True, check=True)
+    sourced = dict(line.split("=", 1) for line in listed.stdout.decode().split("\0") if line)
+    return lambda inside: sourced if inside else plain
+
+
+@pytest.fixture
+def node(environment, tmp_path):
     """A function that starts a program under ROS; what runs at the end of the test is ended."""
     started = []
 
     def start(name, text):
         (tmp_path / name).write_text(text)
-        shell = f". {ROS}/v/bin/activate && . {ROS}/install/setup.bash && exec python3 {name}"
-        environment = {
-            **{k: v for k, v in os.environ.items() if not k.startswith("PYTHON")},
-            "RMW_IMPLEMENTATION": "rmw_cyclonedds_cpp",
-            "RCL_LOGGING_IMPLEMENTATION": "rcl_logging_noop",
-            "CYCLONEDDS_URI": LOOPBACK,
-            "ROS_DOMAIN_ID": str(domain),
-        }
         started.append(
             subprocess.Popen(
-                ["bash", "-c", shell], cwd=tmp_path, env=environment, text=True,
+                [ROS / "v/bin/python3", name], cwd=tmp_path, env=environment(inside=True), text=True,
                 stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
             )
         )  # fmt: skip
@@ -148,19 +180,11 @@ def node(domain, tmp_path):
         process.wait()
 
 
-def run(tmp_path, domain, out, *settings):
-    given = (f"autopilot.ros2.domain={domain}", *settings)
-    done = seatrial_process(
-        "run",
-        "otter-course-square",
-        "--autopilot",
-        "ros2",
-        "--engine",
-        "direct",
-        "--out",
-        out,
-        *(each for setting in given for each in ("--set", setting)),
-        cwd=tmp_path,
+def run(tmp_path, environment, out, *settings):
+    command = [SEATRIAL, "run", "otter-course-square", "--autopilot", "ros2", "--engine", "direct"]
+    command += ["--out", out, *(each for setting in settings for each in ("--set", setting))]
+    done = subprocess.run(
+        command, cwd=tmp_path, env=environment, capture_output=True, text=True, check=False
     )
     assert done.returncode in (0, 1), done.stderr
     return tmp_path / out / "signals.csv"
@@ -171,18 +195,20 @@ def helm():
     return re.search(r"```python\n(.*?)```", page, re.S)[1]
 
 
-def test_the_tutorial_s_node_sails_the_square_twice_alike(node, domain, tmp_path):
+def test_the_tutorial_s_node_sails_the_square_twice_alike(node, environment, transport, tmp_path):
     node("helm.py", helm())
     lockstep = (
         "autopilot.ros2.lockstep=stamped",
         *(f"autopilot.ros2.{key}=100 ms" for key in ("period", "truth_period")),
     )
-    first, second = (run(tmp_path, domain, out, *lockstep) for out in ("first", "second"))
+    own = environment(inside=transport == "rclpy")
+    first, second = (run(tmp_path, own, out, *lockstep) for out in ("first", "second"))
     assert first.read_bytes() == second.read_bytes()
     verdicts = {each["name"]: each["passed"] for each in load_run(tmp_path / "first").verdicts}
     assert verdicts["all waypoints are passed"]
 
 
+@pytest.mark.parametrize("transport", ["dds"], indirect=True)
 def test_a_node_for_vrx_runs_as_it_is(node, domain, tmp_path):
     """It reaches the goal, in a circle of 1 m, and its death is neutral."""
     process = node("keeper.py", KEEPER)
@@ -212,16 +238,38 @@ def test_a_node_for_vrx_runs_as_it_is(node, domain, tmp_path):
         assert simulation.get("autopilot.ros2.pulse.ch1") == pytest.approx(1.5e-3)
 
 
-def test_clock_imu_services_and_faults(node, domain, tmp_path):
+def test_clock_imu_services_and_faults(node, environment, transport, domain):
     process = node("watch.py", WATCH)
-    with Simulation(
-        "sil",
-        choices={"vehicle": "otter", "autopilot": "ros2"},
-        set={"autopilot.ros2.domain": domain},
-    ) as simulation:
-        until = time.monotonic() + 90.0
-        while process.poll() is None and time.monotonic() < until:
-            simulation.step(1)
-            time.sleep(0.005)
-        assert process.poll() == 0, process.stdout.read()
-        assert simulation.get("autopilot.ros2.failure.gps") == "off"
+    command = [sys.executable, "-c", STEPPED, str(domain)]
+    with subprocess.Popen(
+        command, env=environment(inside=transport == "rclpy"), text=True,
+        stdin=subprocess.PIPE, stdout=subprocess.PIPE,
+    ) as simulation:  # fmt: skip
+        try:
+            said, _ = process.communicate(timeout=120.0)
+        finally:
+            found, _ = simulation.communicate("end\n")
+    assert process.returncode == 0, said
+    assert found.strip() == "off"
+
+
+# What rclpy does not tell, and types that the workspace has not.
+_APART = (
+    "test_bad_input.py::test_a_second_publisher_is_refused_while_the_first_commands",
+    "test_surroundings.py::test_ships_that_ais_reports_are_targets_in_map_and_sentences",
+    "test_vrx.py::test_a_node_of_vrx_gets_goal_error_and_state",
+)
+
+
+@pytest.mark.parametrize("transport", ["dds"], indirect=True)
+def test_the_tests_of_the_link_pass_over_rclpy_too(environment):
+    """Their peers are cyclonedds alone."""
+    own = environment(inside=True)
+    del own["RMW_IMPLEMENTATION"], own["ROS_DOMAIN_ID"], own["ROS_LOCALHOST_ONLY"]
+    command = [sys.executable, "-m", "pytest", "tests/kits/ros2", "--timeout", "200"]
+    command += [f"--deselect=tests/kits/ros2/{each}" for each in _APART]
+    done = subprocess.run(
+        command, cwd=ROOT, env={**own, "SEATRIAL_TEST_TRANSPORT": "rclpy"},
+        capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stdout[-4000:]

@@ -116,9 +116,6 @@ class RclpyWriter:
     """Writes messages of one kind: a `Writer`."""
 
     def __init__(self, node: Any, topic: str, kind: str, durability: Durability) -> None:
-        from rclpy.exceptions import RCLError
-
-        self._refused: type[Exception] = RCLError
         self.name, self.kind, self.dropped = topic, kind, 0
         depth = 1 if durability == "latched" else 10
         quality = _quality(durability, depth)
@@ -128,7 +125,7 @@ class RclpyWriter:
         """Write a message of the kind, as bytes (`packing`)."""
         try:
             self._publisher.publish(data)
-        except self._refused:
+        except RuntimeError:  # RCLError is one
             self.dropped += 1
 
     @property
@@ -150,7 +147,8 @@ class RclpyReader:
 
     def look(self) -> bool:
         """Take in what has come; return whether anything waits to be taken."""
-        with self._subscription.handle as handle:
+        handle = self._subscription.handle
+        with handle:
             for _ in range(self._come.maxlen or 1):
                 taken = handle.take_message(self._type, True)
                 if taken is None:

@@ -26,8 +26,9 @@ class RclpyService:
 
     def serve(self) -> None:
         """Answer the calls that have come."""
+        handle = self._service.handle
         for _ in range(_MOST):
-            with self._service.handle as handle:
+            with handle:
                 request, header = handle.service_take_request(self._type.Request)
             if header is None:
                 return

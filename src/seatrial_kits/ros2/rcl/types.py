@@ -29,7 +29,9 @@ def interface(kind: str) -> Any:
     found = getattr(module, name, None)
     if found is None:
         raise ImportError(f"{package} has no {name}")
-    return getattr(found.Impl, _OF_ACTION[part]) if part else found
+    if part in _OF_ACTION:
+        return getattr(found.Impl, _OF_ACTION[part])
+    return getattr(found, part) if part else found
 
 
 def lacks(kind: str) -> str:
