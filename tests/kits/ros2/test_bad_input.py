@@ -26,6 +26,8 @@ from .peer import (
     Vector3,
 )
 
+_ARRIVES = 0.5 if "SEATRIAL_TEST_TRANSPORT" in os.environ else 0.02
+"""Wall time in which a message arrives, s."""
 PORT, LINK = "/otter/thrusters/port/thrust", "autopilot.ros2."
 
 
@@ -65,7 +67,7 @@ def sent(simulation, writer, *messages):
         time.sleep(0.01)
     for each in messages:
         writer.write(each)
-        time.sleep(0.02)
+        time.sleep(_ARRIVES)
     simulation.step(3)
 
 

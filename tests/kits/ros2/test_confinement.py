@@ -6,7 +6,9 @@ import sys
 
 import pytest
 
-_SHOW = """
+# Prints the sockets of a process that joins the domain by a transport, and the groups of DDS that
+# it is in more than before.
+SHOW = """
 import json, os, socket, sys
 from seatrial_kits.ros2.joining import join
 
@@ -22,7 +24,7 @@ def sockets():
                 yield opened.getsockname()[0], device.rstrip(bytes(1)).decode()
 
 groups = open("/proc/net/igmp").read().count("0100FFEF")  # 239.255.0.1, the group of DDS
-participant = join(int(sys.argv[1]), "/seatrial", "dds")
+participant = join(int(sys.argv[1]), "/seatrial", sys.argv[2])
 more = open("/proc/net/igmp").read().count("0100FFEF") - groups
 print(json.dumps([list(sockets()), more]))
 """
@@ -31,7 +33,7 @@ print(json.dumps([list(sockets()), more]))
 @pytest.mark.skipif(sys.platform != "linux", reason="Linux binds sockets to a device")
 def test_nothing_comes_in_but_over_the_loopback_interface(domain):
     done = subprocess.run(
-        [sys.executable, "-c", _SHOW, str(domain)], capture_output=True, text=True, check=True
+        [sys.executable, "-c", SHOW, str(domain), "dds"], capture_output=True, text=True, check=True
     )
     opened, groups = json.loads(done.stdout)
     assert len(opened) > 1
