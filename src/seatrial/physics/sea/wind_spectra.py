@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from . import lattice
+from .in_order import cosines, summed
 from .numbers import Array, Numbers, fixed, require_positive
 from .quadrature import integrals
 
@@ -71,7 +72,7 @@ class Gusts:
 
     def speed(self, t: float) -> float:
         """Return the speed to be added to the mean at ``t``, m/s."""
-        return float(self.amplitude @ np.cos(self.omega * t + self.phase))
+        return float(summed(self.amplitude * cosines(self.omega * t + self.phase)))
 
 
 def gusts(spectrum: Callable[[Array], Array], seed: int, per_octave: int = 10) -> Gusts:
