@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import ctypes
 import threading
-from collections.abc import Callable, Mapping, Sequence
+import traceback
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -61,7 +62,7 @@ def surroundings_of(source: ComponentSource, values: Mapping[str, Any]) -> Met |
     around = getattr(met, "__self__", None)
     if type(around) is Around and around.size == size:
         weather = WeatherInC(around)
-        return Met(ctypes.cast(weather_at(), ctypes.c_void_p).value, weather.address, weather)
+        return Met(weather_at(), weather.address, weather)
     called = _called(met, states)
     return Met(ctypes.cast(called, ctypes.c_void_p).value, None, called)
 
@@ -70,16 +71,20 @@ def _size(ports: Sequence[Port]) -> int:
     return sum(port.size for port in ports)
 
 
-def _called(met: Surroundings, states: int) -> Callable[..., int]:
+def _called(met: Surroundings, states: int) -> Any:
     """Return surroundings of somebody's own in Python, as a function of C."""
     alone = threading.Lock()  # copies share it, and NumPy lets other threads run amid a product
 
     def call(_: None, t: float, state: int, to: int) -> int:
         x = np.ctypeslib.as_array((ctypes.c_double * states).from_address(state))
-        with alone:
-            found = met(t, x)
+        try:
+            with alone:
+                found = met(t, x)
+        except Exception:
+            traceback.print_exc()  # C knows no exceptions
+            return 0
         ctypes.memmove(to, found.ctypes.data, found.nbytes)
-        return 1  # an exception, which ctypes shows, is 0
+        return 1
 
     return MET(call)
 

@@ -6,7 +6,8 @@ import ctypes
 import hashlib
 import math
 import threading
-from collections.abc import Callable, Sequence
+import traceback
+from collections.abc import Sequence
 from functools import cache
 from pathlib import Path
 from typing import Any, ClassVar
@@ -73,15 +74,17 @@ class WeatherInC:
         z = -1 if places.z is None else places.z
         self._in_c = _Weather(places.x, places.y, z, places.psi, places.u, places.v)
         self._in_c.make = _MAKE(self._make)
-        for part, take in (
-            (around.loads, self._take_loads),
-            (around.orbital, self._take_orbital),
-            (around.parts, self._take_parts),
-            (around.current, self._take_current),
-            (around.wind, self._take_wind),
-        ):
-            if part is not None:
-                take(part)  # type: ignore[operator]
+        if around.loads is not None:
+            self._take_loads(around.loads)
+        if around.orbital is not None:
+            self._take_motion(around.orbital)
+            self._set(at_origin=1)
+        if around.parts is not None:
+            self._take_parts(around.parts)
+        if around.current is not None:
+            self._take_current(around.current)
+        if around.wind is not None:
+            self._take_wind(*around.wind)
 
     @property
     def address(self) -> int:
@@ -100,12 +103,16 @@ class WeatherInC:
             setattr(self._in_c, name, value)
 
     def _make(self, kind: int, number: int) -> int | None:
-        """Return where C finds a table that it needs; an exception, which ctypes shows, is NULL."""
-        with self._alone:
-            key = kind, number
-            if key not in self._kept:
-                self._kept[key] = self._made(kind, number)
-            return self._kept[key].ctypes.data
+        """Return where C finds a table that it needs, None if it cannot be made."""
+        key = kind, number
+        try:
+            with self._alone:
+                if key not in self._kept:
+                    self._kept[key] = self._made(kind, number)
+                return self._kept[key].ctypes.data
+        except Exception:
+            traceback.print_exc()  # C knows no exceptions
+            return None
 
     def _made(self, kind: int, number: int) -> npt.NDArray[np.float64]:
         if kind == _HEADING:
@@ -133,10 +140,6 @@ class WeatherInC:
         for name in ("amplitude", "k", "motions", "back", "below"):
             self._keep(name, getattr(orbital, name))
 
-    def _take_orbital(self, orbital: Orbital) -> None:
-        self._take_motion(orbital)
-        self._set(at_origin=1)
-
     def _take_parts(self, parts: WavesAtParts) -> None:
         self._set(part_size=parts.size)
         if parts.orbital is not None:
@@ -161,8 +164,7 @@ class WeatherInC:
             blocks = self._kept["samples"] = np.zeros((2, _BLOCKS), np.uintp)
             self._in_c.samples[:] = [row.ctypes.data for row in blocks]
 
-    def _take_wind(self, given: tuple[WindState, WindLoad, float]) -> None:
-        wind, windage, height = given
+    def _take_wind(self, wind: WindState, windage: WindLoad, height: float) -> None:
         self._set(has_wind=1, wind_mean=wind.mean(height))
         self._set(wind_cos=math.cos(wind.direction), wind_sin=math.sin(wind.direction))
         self._set(gust_peak=wind.gust, gust_start=wind.gust_start)
@@ -190,20 +192,18 @@ def _windage(load: WindLoad) -> tuple[int, npt.ArrayLike, Sequence[float]]:
 
 
 @cache
-def weather_at() -> Callable[..., int]:
-    """Return ``weather_at`` of the library, compiled if the user's cache does not have it.
+def weather_at() -> int:
+    """Return where ``weather_at`` of the library is, compiled if the user's cache has it not.
 
-    Of `WeatherInC.address`, a time, s, where the state is, and where the values go; 0: there is no
-    value. Raises InputError without a compiler.
+    It is `Surroundings` of ``component.h``, of a `WeatherInC.address`. Raises InputError without a
+    compiler.
     """
     sources = {path.name: path.read_bytes() for path in _SOURCES}
     digest = hashlib.sha256(repr((FLAGS, HERE, sources)).encode()).hexdigest()[:16]
     path = cache_folder("native") / f"weather-{digest}{TARGETS[HERE][1]}"
     if not path.is_file():
         write_named(path, library_here(sources, HERE))
-    library = ctypes.CDLL(str(path))
+    library = ctypes.CDLL(str(path))  # never unloaded
     library.weather_size.restype = ctypes.c_int64
     assert library.weather_size() == ctypes.sizeof(_Weather)
-    found = library.weather_at
-    found.argtypes = [ctypes.c_void_p, ctypes.c_double, ctypes.c_void_p, ctypes.c_void_p]
-    return found  # type: ignore[no-any-return]
+    return ctypes.cast(library.weather_at, ctypes.c_void_p).value or 0

@@ -5,15 +5,22 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property
-
-import numpy as np
+from functools import cached_property, lru_cache
 
 from ...errors import InputError
-from . import wind_spectra
 from .current import towards
-from .numbers import Array
-from .wind_spectra import Gusts, davenport, froya, harris, logarithmic, norsok, power_law
+from .numbers import Array, fixed
+from .wind_spectra import (
+    Gusts,
+    davenport,
+    froya,
+    gust_energies,
+    gusts,
+    harris,
+    logarithmic,
+    norsok,
+    power_law,
+)
 
 PROFILES: dict[str, Callable[[float, float], float]] = {
     "uniform": lambda mean, z: mean,
@@ -82,9 +89,10 @@ class WindState:
         """What comes on top of the mean speed, None of a steady wind."""
         if self.spectrum == NONE:
             return None
-        density = SPECTRA[self.spectrum]
+        return gusts(_gust_energies(self.spectrum, self.speed), int(self.seed))
 
-        def of_frequency(f: Array) -> Array:
-            return np.asarray(density(f, self.speed))
 
-        return wind_spectra.gusts(of_frequency, int(self.seed))
+@lru_cache(16)
+def _gust_energies(spectrum: str, mean: float) -> Array:
+    """Return what the gusts of every seed have: the energies of bands, m2/s2."""
+    return fixed(gust_energies(lambda f: SPECTRA[spectrum](f, mean)))
