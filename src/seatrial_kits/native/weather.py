@@ -110,8 +110,8 @@ class WeatherInC:
                 if key not in self._kept:
                     self._kept[key] = self._made(kind, number)
                 return self._kept[key].ctypes.data
-        except Exception:
-            traceback.print_exc()  # C knows no exceptions
+        except BaseException:  # C knows none: ctypes would return what is not there
+            traceback.print_exc()
             return None
 
     def _made(self, kind: int, number: int) -> npt.NDArray[np.float64]:
