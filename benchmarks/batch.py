@@ -67,6 +67,17 @@ def _batch(
         return min(t for t, _ in times) / shares, min(t for _, t in times) / shares
 
 
+def _weather() -> tuple[float, float, float]:
+    """Return the time of a step of one copy in calm water and in waves, and of a start there, s."""
+    steps = []
+    for trial in ("hydrone-landing", "hydrone-landing-waves"):
+        with seatrial.Batch(trial, 64) as batch:
+            batch.step(2000)  # by then the headings at which waves are met are tabulated
+            steps.append(min(_spent(lambda: batch.step(_STEPS)) for _ in range(5)) / 64 / _STEPS)
+            start = _spent(lambda: batch.reset(seed=1000)) / 64
+    return steps[0], steps[1], start
+
+
 def main() -> None:
     """Print the table."""
     single, (loop, sensors) = _single(), _environment()
@@ -82,6 +93,9 @@ def main() -> None:
     one, wall = _batch(256, sensors, _ENVIRONMENT)
     two, shared = _batch(256, sensors, _ENVIRONMENT, threads=2)
     print(f"2 threads: processor time {two / one:.2f}, wall {wall / shared:.2f} times as fast")
+    calm, waves, start = _weather()
+    print(f"in waves, current and gusts: {waves / calm:.2f} of calm water ({calm * 1e6:.2f} us)")
+    print(f"start of a copy with another sea: {start * 1e3:.1f} ms")
     copies = 256
     before = _resident()
     with seatrial.Batch(_RIG, copies):

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 from .moved import find_moved
 
 if TYPE_CHECKING:
-    from .api.batch import Batch
+    from .api.batch import Batch, Batches
     from .api.campaigns import CampaignResult, ask_campaign, load_campaign_result, run_campaign
     from .api.results import TrialResult, Verdict, load_result, run_trial
     from .api.simulation import Simulation
@@ -25,6 +25,7 @@ find_moved()
 
 __all__ = [
     "Batch",
+    "Batches",
     "CampaignResult",
     "InputError",
     "SeatrialError",
@@ -41,7 +42,7 @@ __all__ = [
 ]
 
 _MODULES = {
-    "api.batch": ("Batch",),
+    "api.batch": ("Batch", "Batches"),
     "api.campaigns": ("CampaignResult", "ask_campaign", "load_campaign_result", "run_campaign"),
     "api.results": ("TrialResult", "Verdict", "load_result", "run_trial"),
     "api.simulation": ("Simulation",),

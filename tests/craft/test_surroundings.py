@@ -7,9 +7,10 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
+from seatrial.physics.craft.around import Around, Places
 from seatrial.physics.craft.marine_craft import MarineCraft
 from seatrial.physics.craft.rov import Rov
-from seatrial.physics.craft.seaway import PORTS, Places, _Around
+from seatrial.physics.craft.seaway import PORTS
 from seatrial.physics.craft.six_dof import six_dof_motion
 from seatrial.physics.sea.wind_loads import Areas
 
@@ -36,7 +37,7 @@ class Given:
 
 
 def around(places=IN_SPACE, loads=None, orbital=None, current=None, wind=None):
-    found = _Around(places, loads, orbital, current, wind).at(T, STATE)
+    found = Around(places, loads, orbital, current, wind).at(T, STATE)
     ends = np.cumsum([port.size for port in PORTS])
     return dict(zip([port.name for port in PORTS], np.split(found, ends[:-1]), strict=True))
 
@@ -68,8 +69,8 @@ def test_a_current_comes_on_top_of_the_waves(z, depth):
 
 
 def test_wind_is_met_in_body_axes():
-    wind, height = Given((6.0, -2.0)), 1.3
-    found = around(wind=(wind, AREAS.loads, height))
+    wind, height = Given(np.array([6.0, -2.0])), 1.3
+    found = around(wind=(wind, AREAS, height))
     assert wind.asked == [(T, height)]
     turned = Rotation.from_euler("Z", 2.1).as_matrix()[:2, :2].T @ wind.answer
     X, Y, K, N = AREAS.loads(1.5 - turned[0], -0.7 - turned[1])

@@ -17,7 +17,7 @@ from seatrial.physics.sea.seastate import SeaState
 from seatrial.physics.sea.spectra import Jonswap, Tma
 from seatrial.physics.sea.spreading import cos_2s, cos_n
 from seatrial.physics.sea.waves import Waves
-from seatrial.physics.sea.wind_spectra import davenport, gusts, harris, norsok
+from seatrial.physics.sea.wind_spectra import davenport, gust_energies, gusts, harris, norsok
 from seatrial.physics.sea.winds import WindState
 
 U = 14.0
@@ -46,7 +46,7 @@ def test_the_mean_wind_by_height(profile, height):
 @pytest.mark.parametrize("spectrum", [davenport, harris, norsok])
 def test_gusts_of_a_spectrum_and_one_of_a_cosine_come_on_top(spectrum):
     wind = WindState(U, -0.8, "power", spectrum.__name__, 6.0, 20.0, 8.0, 4)
-    drawn = gusts(lambda f: spectrum(f, U), 4)
+    drawn = gusts(gust_energies(lambda f: spectrum(f, U)), 4)
     for t, bump in ((19.9, 0), (21.0, 1 - math.sqrt(0.5)), (25.0, 1 + math.sqrt(0.5)), (28.3, 0)):
         random = np.sum(drawn.amplitude * np.cos(drawn.omega * t + drawn.phase))
         speed = at_height("power", 4.0) + random + 3.0 * bump

@@ -28,7 +28,7 @@ from seatrial.physics.sea.wind_loads import (
     Silhouette,
     angle_of_attack,
 )
-from seatrial.physics.sea.wind_spectra import davenport, froya, gusts, harris, norsok
+from seatrial.physics.sea.wind_spectra import davenport, froya, gust_energies, gusts, harris, norsok
 
 from .references import content, table
 
@@ -67,9 +67,9 @@ def test_profile_of_froya():
 
 
 def test_gusts_have_the_spectrums_variance_and_depend_on_the_seed_alone():
-    made = gusts(lambda f: norsok(f, 10.0), seed=4)
+    made = gusts(gust_energies(lambda f: norsok(f, 10.0)), seed=4)
     assert 0.5 * np.square(made.amplitude).sum() == pytest.approx((0.0944 * 10) ** 2, rel=0.02)
-    stronger = gusts(lambda f: norsok(f, 20.0), seed=4)
+    stronger = gusts(gust_energies(lambda f: norsok(f, 20.0)), seed=4)
     assert (made.phase == stronger.phase).all()
     assert (made.omega == stronger.omega).all()
     speeds = [made.speed(t) for t in np.arange(0.0, 36000.0, 5.0)]

@@ -1,7 +1,8 @@
-"""Copies of a rig in compiled code: `Batch`, which a kit brings."""
+"""Copies of rigs in compiled code: `Batch` and `Batches`, which a kit brings."""
 
 from __future__ import annotations
 
 from ..plugins import service
 
 Batch = service("batch.Batch")
+Batches = service("batch.Batches")

@@ -113,9 +113,10 @@ static void set_row(Copy *copy, const uint32_t *references, int64_t count, const
 
 /* Let a component of a copy meet other surroundings from its next start on; NULL: nothing. */
 EXPORTED void batch_surround(Batch *batch, int64_t i, int64_t node,
-                             int (*met)(double, const double *, double *)) {
+                             int (*met)(const void *, double, const double *, double *),
+                             const void *of) {
     if (rig_nodes[node].carrier->surround)
-        rig_nodes[node].carrier->surround(rig_component(batch->copies[i].rig, (int)node), met);
+        rig_nodes[node].carrier->surround(rig_component(batch->copies[i].rig, (int)node), met, of);
 }
 
 EXPORTED void batch_set(Batch *batch, const uint8_t *mask, const uint32_t *references,

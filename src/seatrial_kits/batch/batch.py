@@ -410,7 +410,8 @@ class Batch:
         for copy in chosen.nonzero()[0].tolist():
             if of_all[copy] is not met[copy]:
                 of_all[copy] = met[copy]
-                self._library.batch_surround(self._batch, copy, node, met[copy] or NOTHING)
+                found = met[copy] or NOTHING
+                self._library.batch_surround(self._batch, copy, node, found.function, found.of)
 
     def _seeds(self, seed: int | Sequence[int]) -> NDArray[np.int64]:
         from .per_copy import seeds_of

@@ -16,7 +16,6 @@ from seatrial.fmi.compiler import FLAGS, HERE, TARGETS, library_here, require_co
 from seatrial.system.system import System
 from seatrial_kits.interchange.rig_fmu.native import rig_in_c, why_not_native
 from seatrial_kits.native.engine import carry_natively
-from seatrial_kits.native.surroundings import MET
 
 _SOURCE = Path(__file__).with_name("batch.c")
 _POINTER = ctypes.c_void_p
@@ -73,7 +72,7 @@ def _loaded(path: Path) -> ctypes.CDLL:
     found.batch_times.argtypes = [_POINTER, _POINTER, _POINTER]
     found.batch_save.argtypes = found.batch_free_states.argtypes = [_POINTER, _POINTER]
     found.batch_restore.argtypes = [_POINTER, _POINTER, _POINTER, _POINTER]
-    found.batch_surround.argtypes = [_POINTER, _COUNT, _COUNT, MET]
+    found.batch_surround.argtypes = [_POINTER, _COUNT, _COUNT, _POINTER, _POINTER]
     for name in (
         "surround",
         "override",

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any, ClassVar
 
@@ -11,17 +12,18 @@ import casadi as ca
 from seatrial.model.component import Input, Parameter, Terminal
 from seatrial.model.plant import State
 from seatrial.model.ports import Output
+from seatrial.physics.craft.around import Around
 from seatrial.physics.craft.marine_craft import MarineCraft
 from seatrial.physics.craft.six_dof import craft_context, six_dof_motion
-from seatrial.physics.craft.surrounded import Surroundings
 from seatrial.physics.craft.terms.hydrodynamics import TERMS
+from seatrial.physics.sea.orbital import Orbital
 
 from .parts.ballast import ballasted, points, surface_weight, volumes
 from .parts.checks import require_parts
 from .parts.coefficients import SORTS, Coefficients, fitted
 from .parts.foils import foil_load
 from .parts.lags import angle_lag, ballast_lag, foil_lag, follow, order_lag
-from .parts.orbital import PARTS_PORTS, AtParts, part_positions, with_waves
+from .parts.orbital import PARTS_PORTS, waves_at_parts, with_waves
 from .parts.propulsors import pushes, steered
 from .parts.screws import ADVANCES
 from .parts.slots import BALLASTS, COUNT, FOILS, PROPULSORS
@@ -132,15 +134,16 @@ class FittedCraft(Coefficients, MarineCraft):
         require_parts(self)
         super().start(t)
 
-    def met(self) -> Surroundings | None:
+    def around(self) -> Around | None:
         """Return sea, current and wind around craft and parts, or None. Raises InputError."""
-        around = super().met()
-        if around is None:
+        found = super().around()
+        if found is None:
             return None
         values = SimpleNamespace(**{name: getattr(self, name) for name in self.ports})
-        positions = part_positions(fitted(values, "propulsor"), fitted(values, "foil"))
-        waves, carried = self.sea_state().waves(), not self._is_at_surface
-        return AtParts(around, waves, self.places, positions, carried).at
+        waves = self.sea_state().waves()
+        orbital = found.orbital or (None if waves is None else Orbital(waves))
+        parts = waves_at_parts(orbital, fitted(values, "propulsor"), fitted(values, "foil"))
+        return replace(found, parts=parts)
 
     def equations(
         self, x: SimpleNamespace, u: SimpleNamespace, p: SimpleNamespace

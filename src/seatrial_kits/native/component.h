@@ -30,8 +30,9 @@ typedef struct {
 #endif
 #include MODEL_H
 
-/* What surrounds a craft at a time, s, by its states; returns 0 where there is no value. */
-typedef int (*Surroundings)(double t, const double *state, double *around);
+/* What surrounds a craft at a time, s, by its states; returns 0 where there is no value. `of` is
+   whatever it was given with. */
+typedef int (*Surroundings)(const void *of, double t, const double *state, double *around);
 
 typedef enum { INSTANTIATED, INITIALISING, RUNNING, TERMINATED } Phase;
 
@@ -58,7 +59,8 @@ typedef struct {
     char error[ERROR_SIZE]; /* of the call that runs */
     char shown[8][32];      /* numbers for a message */
     int shown_count;
-    Surroundings met; /* of a plant in waves, current or wind, from its host */
+    Surroundings met; /* of a plant in waves, current or wind, from its host, */
+    const void *of;   /* and of what */
 } Instance;
 
 #if !defined(TOUCHED) /* bytes of the memory that most steps touch */

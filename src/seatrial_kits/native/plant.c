@@ -41,9 +41,9 @@ static void advance_still(State *state, double h, long long count) {
 #endif
 
 /* Let it meet surroundings from its next start on; NULL: nothing. */
-EXPORTED void seatrial_surround(void *component, Surroundings met) {
+EXPORTED void seatrial_surround(void *component, Surroundings met, const void *of) {
     Instance *self = component;
-    self->met = met;
+    self->met = met, self->of = of;
     self->state.restart = self->state.stale = 1;
 }
 
@@ -53,7 +53,9 @@ static void load_among(const State *state, double *u, double *p) {
 }
 
 static void meet(Instance *self, double t, const double *x, double *around) {
-    if (self->met && self->met(t, x, around)) return;
+    int has_value = self->met && self->met(self->of, t, x, around);
+    for (int i = 0; i < AROUND && has_value; i++) has_value = isfinite(around[i]);
+    if (has_value) return;
     fail(self, "%s: there is no value for what surrounds it at t = %s s", self->name, shown(self, t));
 }
 

@@ -1,25 +1,41 @@
-"""Waves, current and wind around a plant in C, evaluated by its equal in Python."""
+"""Waves, current and wind around a plant in C."""
 
 from __future__ import annotations
 
 import ctypes
 import threading
-from collections.abc import Callable, Mapping
-from typing import Any, cast
+import traceback
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from seatrial.fmi.components.source import ComponentSource
 from seatrial.fmi.instance import Instance
+from seatrial.model.ports import Port
+from seatrial.physics.craft.around import Around
 from seatrial.physics.craft.surrounded import SurroundedPlant, Surroundings
 
-MET = ctypes.CFUNCTYPE(ctypes.c_int, ctypes.c_double, ctypes.c_void_p, ctypes.c_void_p)
-"""`Surroundings` of ``component.h``."""
+from .weather import WeatherInC, weather_at
+
+MET = ctypes.CFUNCTYPE(
+    ctypes.c_int, ctypes.c_void_p, ctypes.c_double, ctypes.c_void_p, ctypes.c_void_p
+)
 
 
-Met = Callable[[float, int, int], int]
-NOTHING: Met = MET()
-"""Around a plant: C's null."""
+@dataclass(frozen=True, eq=False)
+class Met:
+    """What surrounds a plant, as C calls it: `Surroundings` of ``component.h``, and of what."""
+
+    function: int | None = None
+    of: int | None = None
+    kept: Any = None
+    """What C needs as long as it calls."""
+
+
+NOTHING = Met()
+"""Around a plant."""
 
 
 def is_surrounded(source: ComponentSource) -> bool:
@@ -40,21 +56,37 @@ def surroundings_of(source: ComponentSource, values: Mapping[str, Any]) -> Met |
     for name, value in values.items():
         plant.set(name, value)
     plant.setup(0.0)
-    met = plant.met()
-    return None if met is None else _called(met, sum(port.size for port in cls.state_ports))
+    met, states, size = plant.met(), _size(cls.state_ports), _size(cls.surrounding_ports)
+    if met is None:
+        return None
+    around = getattr(met, "__self__", None)
+    if type(around) is Around and around.size == size:
+        weather = WeatherInC(around)
+        return Met(weather_at(), weather.address, weather)
+    called = _called(met, states)
+    return Met(ctypes.cast(called, ctypes.c_void_p).value, None, called)
 
 
-def _called(met: Surroundings, states: int) -> Met:
+def _size(ports: Sequence[Port]) -> int:
+    return sum(port.size for port in ports)
+
+
+def _called(met: Surroundings, states: int) -> Any:
+    """Return surroundings of somebody's own in Python, as a function of C."""
     alone = threading.Lock()  # copies share it, and NumPy lets other threads run amid a product
 
-    def call(t: float, state: int, to: int) -> int:
+    def call(_: None, t: float, state: int, to: int) -> int:
         x = np.ctypeslib.as_array((ctypes.c_double * states).from_address(state))
-        with alone:
-            found = met(t, x)
+        try:
+            with alone:
+                found = met(t, x)
+        except BaseException:  # C knows none: ctypes would return what is not there
+            traceback.print_exc()
+            return 0
         ctypes.memmove(to, found.ctypes.data, found.nbytes)
-        return 1  # an exception, which ctypes shows, is 0
+        return 1
 
-    return cast("Met", MET(call))
+    return MET(call)
 
 
 def surround(instance: Instance, met: Met) -> None:
@@ -62,5 +94,5 @@ def surround(instance: Instance, met: Met) -> None:
     slave: Any = instance
     slave.around = met  # as long as the instance
     take = slave._slave.dll.seatrial_surround
-    take.argtypes, take.restype = [ctypes.c_void_p, MET], None
-    take(slave.component, met)
+    take.argtypes, take.restype = [ctypes.c_void_p] * 3, None
+    take(slave.component, met.function, met.of)

@@ -13,6 +13,7 @@ from seatrial.model.component import Input, Parameter, terminal
 from seatrial.model.expressions import Vector
 from seatrial.model.plant import State
 from seatrial.model.ports import Output
+from seatrial.physics.craft.around import Places
 from seatrial.physics.craft.foils import flow_at, foil_load
 from seatrial.physics.craft.inertia import require_positive_definite
 from seatrial.physics.craft.planar import (
@@ -25,7 +26,6 @@ from seatrial.physics.craft.planar import (
     sea_load,
     water_outputs,
 )
-from seatrial.physics.craft.seaway import Places
 from seatrial.physics.craft.wave_hull import HullCoefficients
 from seatrial.physics.foils import HIGH_ALPHA, SAIL_ENTRIES, foil_naca63010, sail_naca0015
 

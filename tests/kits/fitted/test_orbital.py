@@ -5,14 +5,15 @@ import math
 import numpy as np
 import pytest
 
-from seatrial.physics.craft.seaway import Places
+from seatrial.physics.craft.around import Places, WavesAtParts
+from seatrial.physics.sea.orbital import Orbital
 from seatrial.physics.sea.waves import regular
-from seatrial_kits.fitted.parts.orbital import AtParts
 from tests.kits.fitted.fitting import craft
 
 HEIGHT, PERIOD = 1.2, 4.0
 OMEGA = 2 * math.pi / PERIOD
 K = OMEGA**2 / 9.81
+PLACES = Places(0, 1, 2, 5, 6, 7)
 AT, TURNED = np.array([1.0, 2.0, 3.0]), 0.3
 
 
@@ -33,16 +34,11 @@ def ahead(place):
 @pytest.mark.parametrize("place", [(0, 0, 2.0), (-12.5, 0, 0.5), (6, -3, -1.0), (0, 8, -5.0)])
 @pytest.mark.parametrize("carried", [True, False])
 def test_each_part_meets_the_waves_where_it_is(place, carried):
-    positions = np.zeros((16, 3))
-    positions[3] = place
-    around = AtParts(
-        lambda t, x: np.zeros(21),
-        regular(HEIGHT, PERIOD, 0.0),
-        Places(0, 1, 2, 5, 6, 7),
-        positions,
-        carried,
-    )
-    met = around.at(0.0, np.array([*AT, 0, 0, TURNED, *[0] * 6]))[21:].reshape(16, 3)
+    orbital = Orbital(regular(HEIGHT, PERIOD, 0.0))
+    parts = WavesAtParts(orbital, (3,), np.array([place]), 16)
+    own = orbital.at(0.0, *AT)[1][:3] if carried else np.zeros(3)
+    met = parts.at(0.0, np.array([*AT, 0, 0, TURNED, *[0] * 6]), PLACES, own)
+    assert not met[[0, 2, 4, 15]].any()
     origin = airy(AT[0], AT[2]) if carried else 0.0
     x, _, z = ahead(place)
     np.testing.assert_allclose(met[3], airy(x, z) - origin, atol=1e-12)
@@ -81,13 +77,10 @@ def test_a_craft_on_long_waves_feels_no_difference():
     # 0.1 m are a ten-thousandth of the wave: the difference is k r of the velocity at most.
     shares = []
     for period in (10.0, 20.0):
-        positions = np.zeros((16, 3))
-        positions[0] = (0.1, 0, 0)
-        around = AtParts(
-            lambda t, x: np.zeros(21), regular(1.0, period, 0.0), Places(0, 1, 2, 5, 6, 7),
-            positions, True,
-        )  # fmt: skip
-        met = around.at(1.0, np.array([0, 0, 5.0, *[0] * 9]))[21:24]
+        orbital = Orbital(regular(1.0, period, 0.0))
+        parts = WavesAtParts(orbital, (0,), np.array([[0.1, 0, 0]]), 16)
+        own = orbital.at(1.0, 0.0, 0.0, 5.0)[1][:3]
+        met = parts.at(1.0, np.array([0, 0, 5.0, *[0] * 9]), PLACES, own)[0]
         shares.append(np.linalg.norm(met) / (math.pi / period))
     assert shares[0] < 0.1 * (2 * math.pi / 10.0) ** 2 / 9.81
     assert shares[1] < shares[0]

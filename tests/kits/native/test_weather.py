@@ -10,7 +10,7 @@ import casadi as ca
 import numpy as np
 import pytest
 
-from seatrial.errors import InputError
+from seatrial.errors import InputError, SimulationError
 from seatrial.fmi.compiler import HERE, library_here
 from seatrial.fmi.components.source import find_source
 from seatrial.fmi.direct import DirectInstance
@@ -37,6 +37,7 @@ class Cork(SurroundedPlant):
     )
     swell = Parameter(0.0, "m/s", "amplitude of the water's velocity", role="sea")
     rate = Parameter(1.0, "rad/s", "its frequency", role="sea")
+    known_until = Parameter(1e9, "s", "end of the forecast; negative: an error then", role="sea")
     slip = Parameter(0.0, "1/s", "pull towards the origin")
     push = Input("m/s", "of somebody")
     x = State("m", "place", axes=("n", "e"))
@@ -52,9 +53,11 @@ class Cork(SurroundedPlant):
     def met(self):
         if not self.swell:
             return None
-        a, w = self.swell, self.rate
+        a, w, until = self.swell, self.rate, self.known_until
 
         def at(t, state):
+            if t > abs(until):
+                return np.full(3, math.inf) if until > 0.0 else math.sqrt(until)
             return np.array([a * math.cos(w * t), a * math.sin(w * t), 0.1 * state[1]])
 
         return at
@@ -180,3 +183,15 @@ def test_a_shipped_trial_in_waves_is_wholly_native_with_the_same_record(
         records.append((tmp_path / engine / "signals.csv").read_bytes())
     assert records[0].count(b"\n") > 40
     assert records[0] == records[1]
+
+
+@pytest.mark.parametrize("known_until", [0.2, -0.2])
+def test_both_end_where_there_is_no_value_around(known_until: float) -> None:
+    """Where it is infinite, and where Python has an error."""
+    for each in _both({**WEATHER, "known_until": known_until}):
+        with pytest.raises(SimulationError) as raised:
+            for k in range(10):
+                each.step(k * 0.05, 0.05)
+        why = "cork: there is no value for what surrounds it at t = 0.25 s"
+        assert why in str(raised.value)
+        each.free()

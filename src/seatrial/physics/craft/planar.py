@@ -21,7 +21,8 @@ from ...model.ports import Output
 from ...model.terminals import ATTACHMENT, MOTION
 from ..sea.loads import Response
 from ..sea.numbers import GRAVITY
-from .seaway import Places, Seaway, WindySeaway
+from .around import Places
+from .seaway import Seaway, WindySeaway
 from .symbolic import rotation_matrix
 from .through_water import ThroughWater, flow_outputs
 from .wave_hull import HullCoefficients, WaveHull

@@ -2,19 +2,14 @@
 
 from __future__ import annotations
 
-import math
-from dataclasses import dataclass
-from typing import ClassVar, NamedTuple
+from typing import ClassVar
 
-import numpy as np
-
-from ...model.expressions import Vector
 from ...model.ports import Port
-from ..sea.currents import CurrentState
 from ..sea.loads import Drift, Response, WaveLoads
 from ..sea.orbital import Orbital
 from ..sea.parameters import MeetsCurrent, MeetsWaves, MeetsWind
 from ..sea.winds import WindState
+from .around import Around, Places
 from .surrounded import SurroundedPlant, Surroundings, surrounding
 from .wave_hull import WaveHull
 from .windage import Windage, WindLoad
@@ -31,22 +26,6 @@ PORTS: tuple[Port, ...] = (
     surrounding("wind_load", "N", "load of the wind, N and N.m, body axes", _LOAD),
 )
 """What a craft's equations find among their inputs while there is sea, current or wind."""
-
-_WATER, _SHEAR = slice(1, 4), slice(7, 9)
-_WAVE, _WIND = slice(9, 15), slice(15, 21)
-_SIZE = 21
-
-
-class Places(NamedTuple):
-    """Where a craft's stacked state has what its surroundings depend on."""
-
-    x: int
-    y: int
-    z: int | None
-    """None of a craft that keeps to the surface."""
-    psi: int
-    u: int
-    v: int
 
 
 class Seaway(MeetsWaves, MeetsCurrent, SurroundedPlant):
@@ -74,7 +53,7 @@ class Seaway(MeetsWaves, MeetsCurrent, SurroundedPlant):
         """Return wind, its load, and the height of it, m; None without wind."""
         return None
 
-    def met(self) -> Surroundings | None:
+    def around(self) -> Around | None:
         """Return sea, current and wind around the craft, or None. Raises InputError."""
         waves, current = self.sea_state().waves(), self.current_state()
         wind = self.wind_over_it()
@@ -88,44 +67,12 @@ class Seaway(MeetsWaves, MeetsCurrent, SurroundedPlant):
             else:
                 loads = WaveLoads(waves, response, self.drift())
         stream = None if current.is_absent else current
-        return _Around(self.places, loads, orbital, stream, wind).at
+        return Around(self.places, loads, orbital, stream, wind)
 
-
-@dataclass
-class _Around:
-    """Surroundings of a craft by the time and its stacked state; see `PORTS`."""
-
-    places: Places
-    loads: WaveLoads | None
-    orbital: Orbital | None
-    current: CurrentState | None
-    wind: tuple[WindState, WindLoad, float] | None
-
-    def at(self, t: float, state: Vector) -> Vector:
-        """Return all of `PORTS`, stacked."""
-        around = np.zeros(_SIZE)
-        x, y, z, psi, u, v = self.places
-        at = state.tolist()
-        north, east, heading = at[x], at[y], at[psi]
-        depth = 0.0 if z is None else at[z]
-        if self.loads is not None:
-            around[_WAVE] = self.loads.at(t, north, east, heading)
-        if self.orbital is not None:
-            around[0], around[1:7] = self.orbital.at(t, north, east, depth)
-        if self.current is not None:
-            velocity, rate, slope = self.current.at(t, depth)
-            around[1:3] += velocity
-            around[4:6] += rate
-            around[_SHEAR] = slope
-        if self.wind is not None:
-            state_of_it, load, height = self.wind
-            blows = state_of_it.velocity(t, height)
-            cos, sin = math.cos(heading), math.sin(heading)
-            ahead = at[u] - float(cos * blows[0] + sin * blows[1])
-            aside = at[v] - float(cos * blows[1] - sin * blows[0])
-            X, Y, K, N = load(ahead, aside).tolist()
-            around[_WIND] = X, Y, 0.0, K, 0.0, N
-        return around
+    def met(self) -> Surroundings | None:
+        """Return `around` as a function, or None. Raises InputError."""
+        around = self.around()
+        return None if around is None else around.at
 
 
 class WindySeaway(Windage, WaveHull, MeetsWind, Seaway):

@@ -19,8 +19,9 @@ from ...model.expressions import Vector
 from ...model.ports import Output
 from ...model.terminals import ATTACHMENT
 from ..sea.loads import Response
+from .around import Places
 from .inertia import require_positive_definite
-from .seaway import Places, Seaway
+from .seaway import Seaway
 from .symbolic import euler_rate_matrix, rotation_matrix, skew
 from .terms.context import Context, wrench
 from .terms.coupled_damping import CoupledDamping

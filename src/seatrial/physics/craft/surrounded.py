@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -10,6 +11,7 @@ from typing import Any, ClassVar
 import casadi as ca
 import numpy as np
 
+from ...errors import SimulationError
 from ...model.expressions import Model, Vector, bind, compile_model, rk4_between
 from ...model.plant import Plant
 from ...model.ports import Input, Port
@@ -60,7 +62,7 @@ class SurroundedPlant(Plant):
         self._met = self.met()
         self._around: Vector | None = None
         if self._met is not None:
-            self._around = self._met(t, self._x)
+            self._around = self._meet(t, self._x)
             # The plant without surroundings says what came before: it only looks ahead.
             self._x_before = self._x - self.derivatives(self._x)
             self._spans = (1.0, 0)
@@ -114,6 +116,17 @@ class SurroundedPlant(Plant):
 
     # ------------------------------------------------------------------ inside
 
+    def _meet(self, t: float, x: Vector) -> Vector:
+        """Return the surroundings. Raises SimulationError where they have no value."""
+        assert self._met is not None
+        with contextlib.suppress(ValueError, OverflowError):
+            found = self._met(t, x)
+            if np.isfinite(found).all():
+                return found
+        raise SimulationError(
+            f"{self.name}: there is no value for what surrounds it at t = {t!r} s"
+        )
+
     def _look_ahead(self, t: float, h: float, count: int) -> None:
         """Evaluate the surroundings ahead, if the step leaves what is evaluated.
 
@@ -121,7 +134,6 @@ class SurroundedPlant(Plant):
          contributes, for each step between the last two: at its beginning, in the middle and
         at the end of each of ``count`` sub-steps.
         """
-        assert self._met is not None
         if self._spans == (h, count) and self._done < len(self._shares):
             return
         slope = (self._x - self._x_before) / self._spans[0]
@@ -129,7 +141,7 @@ class SurroundedPlant(Plant):
         if self._spans == (h, count):
             apart = len(self._shares) * h
             self._evaluated[:-1] = self._evaluated[1:]
-            self._evaluated[-1] = self._met(t + apart, self._x + apart * slope)
+            self._evaluated[-1] = self._meet(t + apart, self._x + apart * slope)
             return
         # The first step, or one of another length than those before.
         self._spans = (h, count)
@@ -137,7 +149,7 @@ class SurroundedPlant(Plant):
         self._shares = _cubic(steps, count)
         apart = steps * h
         self._evaluated = np.array(
-            [self._met(t + j * apart, self._x + j * apart * slope) for j in range(-2, 2)]
+            [self._meet(t + j * apart, self._x + j * apart * slope) for j in range(-2, 2)]
         )
 
     def _bind_surrounded(self) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -282,14 +283,19 @@ class _OneInWaves:
     def forces(self, omega: Array, k: Array, chi: Numbers) -> Complex:
         """Return X, Y, Z, K, M, N per metre of amplitude, (6, components); see `Strips`."""
         force = self.strips.forces(omega, k, chi)
-        force[3] = self.in_roll.forces(omega, k, chi)[3] + self._by_slope(omega, k, chi)
+        if self.in_roll is not self.strips:
+            force[3] = self.in_roll.forces(omega, k, chi)[3]
+        force[3] += self._by_slope(omega, k, chi)
         force[4] = self.in_pitch.forces(omega, k, chi)[4]
         # The craft's added mass and damping act at its body origin, pressure on the hull here.
-        none = 0.0 * self.strips.x
-        bare = replace(self.strips, a33=none, b33=none, a22=none, b22=none)
-        pressure = bare.forces(omega, k, chi)[:3]
+        pressure = self._bare.forces(omega, k, chi)[:3]
         force[3:] += np.cross(self.place, pressure, axis=0).reshape(3, -1)
         return np.asarray(force * np.exp(-1j * k * self.place[0] * np.cos(chi)))
+
+    @cached_property
+    def _bare(self) -> Strips:
+        none = 0.0 * self.strips.x
+        return replace(self.strips, a33=none, b33=none, a22=none, b22=none)
 
     def _by_slope(self, omega: Array, k: Array, chi: Numbers) -> Complex:
         """Roll moment of one hull by the slope across it: it rolls relative to the surface."""

@@ -2,26 +2,19 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable
-
-import numpy as np
-
 from ...errors import InputError
 from ...model.component import Component, Parameter
-from ...model.expressions import Vector
 from ..sea.wind_loads import (
-    AIR_DENSITY,
     BLENDERMANN,
     Areas,
     Blendermann,
     Isherwood,
+    Ship,
     Silhouette,
-    angle_of_attack,
 )
 
-WindLoad = Callable[[float, float], Vector]
-"""X, Y, K, N, N and N.m about the body origin, of the velocity through the air u, v, m/s."""
+WindLoad = Areas | Ship
+"""Its `loads` are X, Y, K, N, N and N.m about the body origin."""
 
 
 class Windage(Component):
@@ -71,7 +64,7 @@ class Windage(Component):
                 self.windage_height,
                 self.windage_along,
                 self.windage_across,
-            ).loads
+            )
         try:
             return self._of_a_ship()
         except InputError as error:
@@ -79,14 +72,14 @@ class Windage(Component):
 
     def _of_a_ship(self) -> WindLoad:
         shape = Silhouette(self.windage_length, self.windage_frontal, self.windage_lateral)
-        ship: Isherwood | Blendermann
+        form: Isherwood | Blendermann
         if self.windage_model == "blendermann":
-            ship = Blendermann(shape, self.windage_type, self.windage_ahead, self.windage_height)
+            form = Blendermann(shape, self.windage_type, self.windage_ahead, self.windage_height)
         else:
             for name in ("windage_beam", "windage_perimeter"):
                 if not getattr(self, name) > 0.0:
                     raise InputError(f"{name} is 0, more is needed by isherwood")
-            ship = Isherwood(
+            form = Isherwood(
                 shape,
                 self.windage_beam,
                 self.windage_perimeter,
@@ -94,9 +87,4 @@ class Windage(Component):
                 int(self.windage_masts),
                 self.windage_superstructure,
             )
-
-        def load(u: float, v: float) -> Vector:
-            coefficients = ship.coefficients(angle_of_attack(u, v))
-            return np.asarray(shape.loads(coefficients, math.hypot(u, v), AIR_DENSITY))
-
-        return load
+        return Ship(shape, form)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import bisect
 import math
 import zlib
 from dataclasses import dataclass
@@ -52,7 +53,13 @@ class Layers:
 
     def at(self, z: float) -> Array:
         """Return the velocity at depth ``z``, m."""
-        return np.array([np.interp(z, self.depths, part) for part in self.velocities.T])
+        after = bisect.bisect_right(self.depths, z)
+        if after in (0, len(self.depths)):
+            return np.asarray(self.velocities[max(0, after - 1)])
+        above, below = self.depths[after - 1 : after + 1].tolist()
+        before = self.velocities[after - 1]
+        share = (z - above) / (below - above)
+        return np.asarray(before + share * (self.velocities[after] - before))
 
 
 @dataclass(frozen=True)
@@ -107,13 +114,18 @@ class GaussMarkov:
 
     def at(self, t: float) -> float:
         """Return x at ``t`` >= 0, s."""
-        k, share = divmod(t / self.period, 1.0)
+        k = math.floor(t / self.period)
+        share = t / self.period - k
+        before, after = self.samples(k, 2)
+        return (1.0 - share) * before + share * after
+
+    def samples(self, first: int, count: int) -> list[float]:
+        """Return ``count`` samples from number ``first`` on, which is that of t = first P."""
         keep = math.exp(-self.period / self.time)
-        while len(self._samples) < k + 2:
+        while len(self._samples) < first + count:
             fresh = self.sigma * math.sqrt(1.0 - keep**2) * self._drawn(len(self._samples))
             self._samples.append(keep * self._samples[-1] + fresh)
-        before, after = self._samples[int(k) : int(k) + 2]
-        return (1.0 - share) * before + share * after
+        return self._samples[first : first + count]
 
     def _drawn(self, k: int) -> float:
         key = [self.seed, zlib.crc32(self.kind.encode())]

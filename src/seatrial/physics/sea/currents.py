@@ -15,7 +15,7 @@ from .numbers import Array
 PROFILES = ("uniform", "power", "linear", "layers")
 LAYERS = 8
 """Greatest number of layers."""
-_SLOPE = 1e-3
+SLOPE = 1e-3
 """m and s: of the differences that slopes over depth and time are taken from."""
 
 
@@ -62,7 +62,7 @@ class CurrentState:
         if self.profile == "layers":
             if not 2 <= self.layers <= LAYERS:
                 raise InputError(f"layers: {self.layers} are given, 2 to {LAYERS} are needed")
-            _ = self._layers
+            _ = self.layered_stream
 
     @property
     def is_absent(self) -> bool:
@@ -78,9 +78,9 @@ class CurrentState:
     def velocity(self, t: float, z: float) -> Array:
         """Return the velocity, m/s north and east, at ``t``, s, and depth ``z``, m."""
         stream = self._stream(t, z)
-        if self._tide is None:
+        if self.tidal_stream is None:
             return stream
-        return np.asarray(stream + self._tide.at(t))
+        return np.asarray(stream + self.tidal_stream.at(t))
 
     def at(self, t: float, z: float) -> tuple[Array, Array, Array]:
         """Return velocity, its rate at that place, m/s2, and its slope over depth, 1/s.
@@ -90,30 +90,31 @@ class CurrentState:
         velocity, none = self.velocity(t, z), np.zeros(2)
         rate = none
         if not self.is_steady:
-            before = max(0.0, t - _SLOPE)
-            span = t + _SLOPE - before
-            rate = (self.velocity(t + _SLOPE, z) - self.velocity(before, z)) / span
+            before = max(0.0, t - SLOPE)
+            span = t + SLOPE - before
+            rate = (self.velocity(t + SLOPE, z) - self.velocity(before, z)) / span
         slope = none
         if self.profile != "uniform":
-            below, above = self.velocity(t, z + _SLOPE), self.velocity(t, z - _SLOPE)
-            slope = (below - above) / (2.0 * _SLOPE)
+            below, above = self.velocity(t, z + SLOPE), self.velocity(t, z - SLOPE)
+            slope = (below - above) / (2.0 * SLOPE)
         return velocity, rate, slope
 
     def _stream(self, t: float, z: float) -> Array:
         speed, direction = self.speed, self.direction
-        if self._slow is not None:
-            t, (fast, turned) = max(t, 0.0), self._slow
+        if self.slow_variation is not None:
+            t, (fast, turned) = max(t, 0.0), self.slow_variation
             # A stream that stops runs on: below 0 the speed is reflected.
             speed = abs(speed + fast.at(t))
             direction += turned.at(t)
         if self.profile == "layers":
-            stream = self._layers.at(z)
-            if self._slow is None:
+            stream = self.layered_stream.at(z)
+            if self.slow_variation is None:
                 return stream
+            north, east = stream.tolist()
             turned_by, grown = direction - self.direction, speed - self.speed
             cos, sin = math.cos(turned_by), math.sin(turned_by)
-            turned_stream = np.array([[cos, -sin], [sin, cos]]) @ stream
-            size = math.hypot(*stream)
+            turned_stream = np.array([cos * north - sin * east, sin * north + cos * east])
+            size = math.sqrt(north * north + east * east)
             return turned_stream * (1.0 + grown / size) if size else turned_stream
         surface = towards(speed, direction)
         if self.profile == "power":
@@ -122,7 +123,8 @@ class CurrentState:
         return wind_driven(surface, z, self.reach) if self.profile == "linear" else surface
 
     @cached_property
-    def _layers(self) -> Layers:
+    def layered_stream(self) -> Layers:
+        """The stream by depth, of the profile "layers" alone."""
         n = self.layers
         velocities = [
             towards(speed, direction)
@@ -133,13 +135,15 @@ class CurrentState:
         return Layers(np.array(self.layer_depths[:n]), np.array(velocities))
 
     @cached_property
-    def _tide(self) -> Tide | None:
+    def tidal_stream(self) -> Tide | None:
+        """The tide's part of it, None without one."""
         if not (self.tide or self.tide_minor):
             return None
         return Tide(self.tide_period, self.tide, self.tide_axis, self.tide_minor, self.tide_phase)
 
     @cached_property
-    def _slow(self) -> tuple[GaussMarkov, GaussMarkov] | None:
+    def slow_variation(self) -> tuple[GaussMarkov, GaussMarkov] | None:
+        """What comes on top of speed and direction, None if nothing does."""
         if not (self.variation or self.turning):
             return None
         seed, time = int(self.seed), self.variation_time

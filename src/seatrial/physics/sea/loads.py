@@ -8,6 +8,7 @@ from collections.abc import Callable
 import numpy as np
 import numpy.typing as npt
 
+from .in_order import summed
 from .numbers import Array, Complex, Numbers
 from .orbital import Phases
 from .waves import Waves
@@ -18,7 +19,8 @@ Response = Callable[[Array, Array, Numbers], Complex]
 Drift = Callable[[Array, Numbers], Array]
 """Mean X, Y, N per square metre of amplitude, (3, components), of w, rad/s, and chi, rad."""
 
-_HEADINGS = 180
+HEADINGS = 180
+"""Of the craft, at which loads are tabulated."""
 _DRIFTS = [0, 1, 5]
 
 
@@ -32,50 +34,47 @@ class WaveLoads:
     """
 
     def __init__(self, waves: Waves, response: Response, drift: Drift | None = None) -> None:
-        self.waves = waves
+        self.waves, self.phases = waves, Phases(waves)
         self._response, self._drift = response, drift
-        self._step = math.tau / _HEADINGS
-        self._rows = 6 if drift is None else 12
-        # The rows of a heading stand above those of the next: both in one product.
-        self._table = np.empty(((_HEADINGS + 1) * self._rows, 2 * len(waves.omega)))
-        self._known = [False] * (_HEADINGS + 1)
-        self._phases = Phases(waves)
-        self._both = np.empty((2, self._rows))
-        self._flat = self._both.reshape(-1)
-        self._shares = np.empty(2)
-        self._tabulate(0)
+        self._step = math.tau / HEADINGS
+        self._tables: dict[int, Array] = {}
 
-    def _tabulate(self, heading: int) -> None:
-        """Fill in the rows of a heading, by its number."""
-        waves = self.waves
-        chi = waves.direction - heading % _HEADINGS * self._step
-        per_wave = self._response(waves.omega, waves.k, chi) * waves.amplitude
-        # Re(F (c + i s)) = (Re F, -Im F) (c, s): real numbers are faster.
-        table = np.concatenate([per_wave.real, -per_wave.imag], -1)
-        if self._drift is not None:
-            mean = self._drift(waves.omega, chi) * waves.amplitude
-            zero = np.zeros_like(mean)
-            parts = [np.concatenate(pair, -1) for pair in ((mean, zero), (zero, mean))]
-            table = np.concatenate([table, *parts])
-        self._table[self._rows * heading : self._rows * (heading + 1)] = table
-        self._known[heading] = True
+    @property
+    def drifts(self) -> bool:
+        """Whether there is drift."""
+        return self._drift is not None
+
+    def table(self, heading: int) -> Array:
+        """Return what components contribute at a heading, by its number (n, 2, 6 or 10).
+
+        Of the cosine of each, then of its sine: six loads; where there is drift, its three per
+        metre, and the amplitude.
+        """
+        if heading not in self._tables:
+            waves = self.waves
+            chi = waves.direction - heading * self._step
+            per_wave = self._response(waves.omega, waves.k, chi) * waves.amplitude
+            # Re(F (c + i s)) = (Re F, -Im F) (c, s): real numbers are faster.
+            parts = np.stack([per_wave.real.T, -per_wave.imag.T], 1)
+            if self._drift is not None:
+                mean = (self._drift(waves.omega, chi) * waves.amplitude).T
+                more = np.concatenate([mean, waves.amplitude[:, None]], 1)
+                parts = np.concatenate([parts, np.stack([more, more], 1)], 2)
+            self._tables[heading] = np.ascontiguousarray(parts)
+        return self._tables[heading]
 
     def at(self, t: float, x: float, y: float, heading: float) -> Array:
         """Return X, Y, Z, K, M, N, N and N m in {b}, at ``t``, s, and place, m, heading, rad."""
-        whole, share = divmod((heading % math.tau) / self._step, 1.0)
-        cell = int(whole) % _HEADINGS
-        for near in (cell, cell + 1):
-            if not self._known[near]:
-                self._tabulate(near)
-        rows = self._table[self._rows * cell : self._rows * (cell + 2)]
-        rows.dot(self._phases.move(t, x, y), out=self._flat)
-        self._shares[0], self._shares[1] = 1.0 - share, share
-        load: Array = self._shares.dot(self._both)
+        turned = heading % math.tau / self._step
+        whole = math.floor(turned)
+        share = turned - whole
+        phasors = np.stack(self.phases.at(t, x, y), -1)[:, :, None]
+        near, far = (summed(self.table(cell % HEADINGS) * phasors) for cell in (whole, whole + 1))
+        of_cosines, of_sines = (1.0 - share) * near + share * far
+        load: Array = of_cosines[:6] + of_sines[:6]
         if self._drift is not None:
-            cosines, sines = self._phases.cosines, self._phases.sines
-            a = self.waves.amplitude
-            load[_DRIFTS] += a.dot(cosines) * load[6:9] + a.dot(sines) * load[9:]
-        return load[:6]
+            load[_DRIFTS] += of_cosines[9] * of_cosines[6:9] + of_sines[9] * of_sines[6:9]
+        return load
 
 
 def tabulated(omega: npt.ArrayLike, chi: npt.ArrayLike, forces: npt.ArrayLike) -> Response:

@@ -20,7 +20,10 @@ from .quadrature import integrals
 
 
 class Spectrum(Protocol):
-    """A density of energy over frequency."""
+    """A density of energy over frequency, a value: equal ones have equal densities."""
+
+    def __hash__(self) -> int:
+        """Return the same of equal spectra, whose integrals are kept."""
 
     @property
     def peaks(self) -> tuple[float, ...]:

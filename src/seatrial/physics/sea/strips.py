@@ -69,14 +69,16 @@ class Strips:
         the bow, rad: 0 following sea, pi head sea, pi/2 to starboard. Of exp(i theta), theta the
         wave's phase at midships; without stretching, for the mean wetted surface.
         """
-        total = np.zeros((6, len(omega)), dtype=complex)
         x = self.x[:, None]
         up, ahead, starboard, moment = self._sections(omega, k, chi)
+        along = np.exp(-1j * k * x * np.cos(chi))
+        lifted, turned = up * along, starboard * along
+        f1, f2, f3 = (ahead * along).sum(0), turned.sum(0), lifted.sum(0)
+        m4, m5, m6 = (moment * along).sum(0), (x * lifted).sum(0), (x * turned).sum(0)
+        total = np.zeros((6, len(omega)), dtype=complex)
         for y in self.hulls:
-            wave = np.exp(-1j * k * (x * np.cos(chi) + y * np.sin(chi)))
-            f3, f1, f2, m4 = up * wave, ahead * wave, starboard * wave, moment * wave
-            parts = (f1, f2, -f3, m4 - y * f3, x * f3, x * f2 - y * f1)
-            total += np.stack([part.sum(0) for part in parts])
+            across = np.exp(-1j * k * y * np.sin(chi))
+            total += across * np.stack([f1, f2, -f3, m4 - y * f3, m5, m6 - y * f1])
         return np.asarray(total * self.spacing)
 
     def _sections(

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy as np
 import numpy.typing as npt
@@ -167,7 +167,7 @@ def irregular(
     count = per_octave or lattice.PER_OCTAVE
     bands = lattice.bands(0.5 * min(spectrum.peaks), high, count)
     edges = lattice.edges(bands, count)
-    energy = band_energies(spectrum, edges)
+    energy = _energies(spectrum, bands, count)
 
     def train(kind: str, indices: Sequence[int], omega: Array, energy: Array) -> Waves:
         def drawn(stream: int) -> Array:
@@ -194,6 +194,12 @@ def irregular(
             train(kind, others, omega[~is_dense], energy[~is_dense]),
         ]
     )
+
+
+@lru_cache(64)
+def _energies(spectrum: Spectrum, bands: range, per_octave: int) -> Array:
+    """Return what every realisation of a spectrum has: the energies of bands, m2."""
+    return fixed(band_energies(spectrum, lattice.edges(bands, per_octave)))
 
 
 def _of_shares(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, cached_property
 from pathlib import Path
 
 import numpy as np
@@ -61,14 +61,18 @@ class Silhouette:
     def __post_init__(self) -> None:
         require_positive(length=self.length, frontal=self.frontal, lateral=self.lateral)
 
+    @property
+    def scales(self) -> list[float]:
+        """What a pressure has to be multiplied with for X, Y, K and N, m2 and m3."""
+        height = self.lateral / self.length
+        return [self.frontal, self.lateral, self.lateral * height, self.lateral * self.length]
+
     def loads(self, coefficients: Array, speed: float, density: float = AIR_DENSITY) -> Array:
         """Return X, Y, N, N, and K, N, N m, of C_X, C_Y, C_K, C_N at a relative ``speed``, m/s.
 
         In the order X, Y, K, N; K about the water line.
         """
-        height = self.lateral / self.length
-        scale = [self.frontal, self.lateral, self.lateral * height, self.lateral * self.length]
-        return np.asarray(0.5 * density * speed**2 * coefficients * scale)
+        return np.asarray(0.5 * density * (speed * speed) * coefficients * self.scales)
 
 
 @dataclass(frozen=True)
@@ -93,10 +97,17 @@ class Isherwood:
     def coefficients(self, gamma: float) -> Array:
         """Return C_X, C_Y, C_K, C_N at the angle gamma, rad."""
         turned = math.remainder(gamma, math.tau)
-        row, share = divmod(abs(math.degrees(turned)) / 10.0, 1.0)
-        table = _isherwood()
-        above = table[min(int(row) + 1, 18)]
-        a, b, c = np.split((1.0 - share) * table[int(row)] + share * above, [7, 14])
+        at = abs(math.degrees(turned)) / 10.0
+        row = math.floor(at)
+        share = at - row
+        near, far = self.rows[row], self.rows[min(row + 1, 18)]
+        side = math.copysign(1.0, turned)
+        return np.asarray(((1.0 - share) * near + share * far) * [1.0, side, 1.0, side])
+
+    @cached_property
+    def rows(self) -> Array:
+        """C_X, C_Y, C_K, C_N every 10 degrees from ahead, from starboard (19, 4)."""
+        a, b, c = np.split(_isherwood(), [7, 14], axis=1)
         ship, length = self.shape, self.shape.length
         arguments = np.array(
             [
@@ -108,15 +119,9 @@ class Isherwood:
                 self.centroid / length,
             ]
         )
-        side = math.copysign(1.0, turned)
-        return np.array(
-            [
-                -(a[:6] @ arguments + a[6] * self.masts),
-                side * (b[:6] @ arguments + b[6] * self.superstructure / ship.lateral),
-                0.0,
-                side * (c @ arguments),
-            ]
-        )
+        along = -(a[:, :6] @ arguments + a[:, 6] * self.masts)
+        across = b[:, :6] @ arguments + b[:, 6] * self.superstructure / ship.lateral
+        return np.stack([along, across, np.zeros(len(a)), c @ arguments], 1)
 
 
 @cache
@@ -149,11 +154,25 @@ class Blendermann:
         along = from_ahead if abs(gamma) <= 0.5 * math.pi else from_astern
         ship = self.shape
         ratio = along * ship.frontal / ship.lateral / across
-        below = 1.0 - 0.5 * delta * (1.0 - ratio) * math.sin(2.0 * gamma) ** 2
+        sine = math.sin(2.0 * gamma)
+        below = 1.0 - 0.5 * delta * (1.0 - ratio) * (sine * sine)
         side = across * math.sin(gamma) / below
         lever = self.ahead / ship.length - 0.18 * (abs(gamma) - 0.5 * math.pi)
         roll = kappa * self.height * ship.length / ship.lateral * side
         return np.array([-along * math.cos(gamma) / below, side, roll, lever * side])
+
+
+@dataclass(frozen=True)
+class Ship:
+    """Wind loads on a merchant ship by its coefficients."""
+
+    shape: Silhouette
+    form: Isherwood | Blendermann
+
+    def loads(self, u: float, v: float) -> Array:
+        """Return X, Y, K, N of the ship's velocity relative to the air, m/s in {b}."""
+        coefficients = self.form.coefficients(angle_of_attack(u, v))
+        return self.shape.loads(coefficients, math.sqrt(u * u + v * v))
 
 
 @dataclass(frozen=True)
@@ -175,7 +194,7 @@ class Areas:
 
     def loads(self, u: float, v: float, density: float = AIR_DENSITY) -> Array:
         """Return X, Y, K, N of the craft's velocity relative to the air, m/s in {b}."""
-        pressure = 0.5 * density * math.hypot(u, v)
+        pressure = 0.5 * density * math.sqrt(u * u + v * v)
         side = -pressure * self.across * self.lateral * v
         ahead = -pressure * self.along * self.frontal * u
         return np.array([ahead, side, self.height * side, self.ahead * side])

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from . import lattice
+from .in_order import cosines, summed
 from .numbers import Array, Numbers, fixed, require_positive
 from .quadrature import integrals
 
@@ -71,18 +72,26 @@ class Gusts:
 
     def speed(self, t: float) -> float:
         """Return the speed to be added to the mean at ``t``, m/s."""
-        return float(self.amplitude @ np.cos(self.omega * t + self.phase))
+        return float(summed(self.amplitude * cosines(self.omega * t + self.phase)))
 
 
-def gusts(spectrum: Callable[[Array], Array], seed: int, per_octave: int = 10) -> Gusts:
-    """Return a realisation of ``spectrum``, m2/s2/Hz of f, Hz, from 1/3600 to 0.5 Hz.
+def gust_energies(spectrum: Callable[[Array], Array], per_octave: int = 10) -> Array:
+    """Return int S df, m2/s2, of each band of `gusts`, of ``spectrum``, m2/s2/Hz of f, Hz."""
+    return integrals(spectrum, lattice.edges(_bands(per_octave), per_octave) / math.tau)
+
+
+def gusts(energies: Array, seed: int, per_octave: int = 10) -> Gusts:
+    """Return a realisation of a spectrum with `gust_energies`, from 1/3600 to 0.5 Hz.
 
     Keyed like waves: frequency and phase of a band depend on its place and ``seed`` alone.
     """
-    indices = lattice.bands(math.tau * LOWEST, math.tau * HIGHEST, per_octave)
-    energy = integrals(spectrum, lattice.edges(indices, per_octave) / math.tau)
+    indices = _bands(per_octave)
     return Gusts(
-        fixed(np.sqrt(2.0 * energy)),
+        fixed(np.sqrt(2.0 * energies)),
         fixed(lattice.frequencies("wind", seed, indices, lattice.edges(indices, per_octave))),
         fixed(math.tau * lattice.draws("wind", seed, lattice.PHASE, indices)),
     )
+
+
+def _bands(per_octave: int) -> range:
+    return lattice.bands(math.tau * LOWEST, math.tau * HIGHEST, per_octave)

@@ -5,14 +5,22 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property
-
-import numpy as np
+from functools import cached_property, lru_cache
 
 from ...errors import InputError
 from .current import towards
-from .numbers import Array
-from .wind_spectra import Gusts, davenport, froya, gusts, harris, logarithmic, norsok, power_law
+from .numbers import Array, fixed
+from .wind_spectra import (
+    Gusts,
+    davenport,
+    froya,
+    gust_energies,
+    gusts,
+    harris,
+    logarithmic,
+    norsok,
+    power_law,
+)
 
 PROFILES: dict[str, Callable[[float, float], float]] = {
     "uniform": lambda mean, z: mean,
@@ -62,23 +70,29 @@ class WindState:
         """Say that there is no wind."""
         return not (self.speed or self.gust)
 
+    def mean(self, height: float) -> float:
+        """Return the mean speed, m/s, at ``height``, m."""
+        return PROFILES[self.profile](self.speed, height)
+
     def velocity(self, t: float, height: float) -> Array:
         """Return the velocity of the air, m/s north and east, at ``t``, s, and ``height``, m."""
-        speed = PROFILES[self.profile](self.speed, height)
-        if self._gusts is not None:
-            speed += self._gusts.speed(t)
+        speed = self.mean(height)
+        if self.gusts is not None:
+            speed += self.gusts.speed(t)
         passed = (t - self.gust_start) / self.gust_duration
         if 0.0 < passed < 1.0:
             speed += 0.5 * self.gust * (1.0 - math.cos(math.tau * passed))
         return towards(max(0.0, speed), self.direction)
 
     @cached_property
-    def _gusts(self) -> Gusts | None:
+    def gusts(self) -> Gusts | None:
+        """What comes on top of the mean speed, None of a steady wind."""
         if self.spectrum == NONE:
             return None
-        density = SPECTRA[self.spectrum]
+        return gusts(_gust_energies(self.spectrum, self.speed), int(self.seed))
 
-        def of_frequency(f: Array) -> Array:
-            return np.asarray(density(f, self.speed))
 
-        return gusts(of_frequency, int(self.seed))
+@lru_cache(16)
+def _gust_energies(spectrum: str, mean: float) -> Array:
+    """Return what the gusts of every seed have: the energies of bands, m2/s2."""
+    return fixed(gust_energies(lambda f: SPECTRA[spectrum](f, mean)))

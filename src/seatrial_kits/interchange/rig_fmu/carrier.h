@@ -32,7 +32,8 @@ typedef struct {
     fmi2SetStringTYPE *set_string;
     fmi2GetFMUstateTYPE *get_state;
     fmi2SetFMUstateTYPE *set_state;
-    void (*surround)(void *component, int (*met)(double, const double *, double *));
+    void (*surround)(void *component, int (*met)(const void *, double, const double *, double *),
+                     const void *of);
 } Carrier;
 
 #endif

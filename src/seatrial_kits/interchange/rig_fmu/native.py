@@ -78,9 +78,9 @@ def why_not_native(system: System, in_python: Mapping[str, Sequence[str]]) -> li
 
 
 def in_weather(system: System) -> list[str]:
-    """Return which components of a rig meet weather, which an FMU in C cannot evaluate."""
+    """Return which components of a rig meet weather, whose tables an FMU in C cannot make."""
     return [
-        f"{part.name}: waves, current and wind around it are evaluated in Python"
+        f"{part.name}: the tables of waves, current and wind around it are made in Python"
         for part in system.parts.values()
         if getattr(part.instance, "around", None)
     ]
