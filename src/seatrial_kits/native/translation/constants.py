@@ -178,7 +178,7 @@ def _texts_of(value: Any, names: tuple[str, ...], add: Any, seen: set[int]) -> I
     if isinstance(value, types.ModuleType):
         if not is_ours(value.__name__) and getattr(value, "__file__", None):
             for name in names:
-                own = getattr(value, name, None)
+                own = vars(value).get(name)  # not what a module makes as it is asked
                 if not isinstance(own, types.ModuleType):
                     add(own)
         return
