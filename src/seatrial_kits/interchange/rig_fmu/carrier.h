@@ -33,6 +33,13 @@ typedef struct {
     fmi2GetFMUstateTYPE *get_state;
     fmi2SetFMUstateTYPE *set_state;
     void (*surround)(void *component, int (*met)(double, const double *, double *));
+#if LANES /* of copies that step together; of a component that cannot, the first is 0 */
+    size_t together; /* bytes that all of them share */
+    void (*gather)(void *memory, void *const copies[], const unsigned char *active);
+    void (*step)(void *memory, void *const copies[], const unsigned char *active, double t, double h,
+                 fmi2Status *found);
+    void (*refresh)(void *memory, void *const copies[], const unsigned char *active);
+#endif
 } Carrier;
 
 #endif
@@ -65,6 +72,9 @@ const Carrier CARRIER = {
     seatrial_surround,
 #else
     NULL,
+#endif
+#if defined(STEPS_TOGETHER)
+    sizeof(Together), gather_together, step_together, refresh_together,
 #endif
 };
 #endif
