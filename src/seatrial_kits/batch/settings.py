@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -26,6 +27,13 @@ from seatrial_kits.native.tables import is_built_in as built_in_port
 Floats = NDArray[np.float64]
 _MOST_SEAS = 256
 """That are kept for copies to come, whatever the number of copies: some hundred kB each."""
+
+
+@dataclass(frozen=True)
+class Each:
+    """What is written for each copy, as a trial's file has it."""
+
+    written: Sequence[Any]
 
 
 class Settings:
@@ -98,6 +106,11 @@ class Settings:
         for whole, scalar in scalars:
             if scalar.causality == "output" and call != "override":
                 raise InputError(f"{call}: {whole} is an output; it can be overridden")
+        if isinstance(value, Each):
+            known, origin = {repr(each): each for each in value.written}, f"{call}: {name}"
+            read = {key: self._read(part, scalars, w, origin) for key, w in known.items()}
+            stacked = np.array([read[repr(each)] for each in value.written])
+            return {whole: stacked[:, i] for i, (whole, _) in enumerate(scalars)}
         rows: NDArray[Any] = np.array(0.0 if isinstance(value, str) else value)
         if rows.dtype.kind in "fiub" and rows.ndim and rows.shape[0] == self._count:
             wanted = (self._count,) if len(scalars) == 1 else (self._count, len(scalars))
@@ -109,12 +122,17 @@ class Settings:
                 f"{len(scalars)} element{'s' * (len(scalars) != 1)}, a row for each copy "
                 f"({self._count}, {len(scalars)})"
             )
+        numbers = self._read(part, scalars, value, f"{call}: {name}")
+        pairs = zip(scalars, numbers, strict=True)
+        return {whole: np.full(self._count, number) for (whole, _), number in pairs}
+
+    def _read(
+        self, part: Part, scalars: Sequence[tuple[str, Variable]], value: Any, origin: str
+    ) -> list[float]:
+        """Return the numbers of what is written of a port."""
         presets = part.presets.get(self._port_of(part, scalars), {})
-        found = from_written(as_written(value), [s for _, s in scalars], presets, f"{call}: {name}")
-        return {
-            whole: np.full(self._count, float(found[scalar.name].value))
-            for whole, scalar in scalars
-        }
+        found = from_written(as_written(value), [s for _, s in scalars], presets, origin)
+        return [float(found[scalar.name].value) for _, scalar in scalars]
 
     def _port_of(self, part: Part, scalars: Sequence[tuple[str, Variable]]) -> str:
         return part.instance.variables.port_of(scalars[0][1].name)
