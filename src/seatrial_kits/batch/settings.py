@@ -16,11 +16,18 @@ from seatrial.errors import InputError, unknown
 from seatrial.fmi.components.source import ComponentSource, find_source
 from seatrial.fmi.instance import Variable
 from seatrial.model.plant import Plant
+from seatrial.physics.craft.surrounded import SurroundedPlant
 from seatrial.system.assembling.component_parameters import derived_seeds, seed_of
 from seatrial.system.part import Part
 from seatrial.system.references.values import check_limits, from_written, port_names, port_scalars
 from seatrial.system.system import System
-from seatrial_kits.native.surroundings import Met, is_surrounded, surroundings_of
+from seatrial_kits.native.surroundings import (
+    Met,
+    is_surrounded,
+    met_with,
+    plant_of,
+    surroundings_of,
+)
 from seatrial_kits.native.tables import WEATHER_ROLES
 from seatrial_kits.native.tables import is_built_in as built_in_port
 
@@ -56,6 +63,8 @@ class Settings:
         self._rows: dict[str, Floats] = {}
         """What was set, by scalar, each (count,)."""
         self._met: dict[tuple[Any, ...], Met | None] = {}
+        self._calm: dict[str, SurroundedPlant] = {}
+        """Plants that had nothing around them: most settings change nothing in that."""
         self._seeded: tuple[NDArray[np.int64], dict[str, Floats]] = (np.empty(0, np.int64), {})
         self._known: dict[tuple[str, ...], NDArray[np.uint32]] = {}
 
@@ -242,19 +251,29 @@ class Settings:
                 and _is_met(source, part.instance.variables[whole.removeprefix(f"{name}.")])
             }
             found[name] = [
-                self._meets(name, source, {**values, **{k: v[i] for k, v in changed.items()}})
+                self._meets(name, source, values, {k: float(v[i]) for k, v in changed.items()})
                 if mask[i]
                 else None
                 for i in range(self._count)
             ]
         return found
 
-    def _meets(self, name: str, source: ComponentSource, values: dict[str, Any]) -> Met | None:
-        key = name, *sorted(values.items(), key=lambda item: item[0])
+    def _meets(
+        self, name: str, source: ComponentSource, values: dict[str, Any], own: dict[str, float]
+    ) -> Met | None:
+        """Return what surrounds a plant with its values, and those of a copy."""
+        key = name, *own.items()
         if key not in self._met:
             if len(self._met) > max(_MOST_SEAS, 4 * self._count):
                 self._met.clear()  # those in use are kept by the copies
-            self._met[key] = surroundings_of(source, values)
+            calm = self._calm.get(name)
+            if calm is None or met_with(calm, own) is not None:
+                self._met[key] = surroundings_of(source, {**values, **own})
+            else:
+                self._met[key] = None
+            if calm is None and self._met[key] is None:
+                self._calm[name] = plant_of(source)
+                met_with(self._calm[name], {**values, **own})
         return self._met[key]
 
     def noise(self, seeds: NDArray[np.int64]) -> tuple[NDArray[np.uint32], Floats]:

@@ -33,15 +33,26 @@ def surroundings_of(source: ComponentSource, values: Mapping[str, Any]) -> Met |
     None for another component, and with nothing around it. Raises InputError for a sea, a current
     or a wind that cannot be.
     """
-    cls = source.component_class()
-    if not issubclass(cls, SurroundedPlant):
+    if not is_surrounded(source):
         return None
-    plant = cls(source.name)
+    plant = plant_of(source)
+    met = met_with(plant, values)
+    return None if met is None else _called(met, sum(port.size for port in plant.state_ports))
+
+
+def plant_of(source: ComponentSource) -> SurroundedPlant:
+    """Return a plant of a class that `is_surrounded`, as it is without values."""
+    plant = source.component_class()(source.name)
+    assert isinstance(plant, SurroundedPlant)
+    return plant
+
+
+def met_with(plant: SurroundedPlant, values: Mapping[str, Any]) -> Surroundings | None:
+    """Return what surrounds a plant once ``values`` are set, None: nothing. Raises InputError."""
     for name, value in values.items():
         plant.set(name, value)
     plant.setup(0.0)
-    met = plant.met()
-    return None if met is None else _called(met, sum(port.size for port in cls.state_ports))
+    return plant.met()
 
 
 def _called(met: Surroundings, states: int) -> Met:

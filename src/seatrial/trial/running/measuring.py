@@ -5,7 +5,7 @@ from __future__ import annotations
 import contextlib
 import time
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass, field
+from dataclasses import dataclass, field
 from typing import Any
 
 from ...errors import SimulationError
@@ -116,4 +116,4 @@ def _stepped(prepared: Prepared, hooks: Hooks) -> Measured:
 
 def verdict_row(name: str, check: str, verdict: Verdict) -> dict[str, Any]:
     """Return what a table of runs has of a criterion."""
-    return {"name": name, "check": check, **asdict(verdict)}
+    return {"name": name, "check": check, **vars(verdict)}
