@@ -231,6 +231,8 @@ static int64_t step_lanes(const Share *share, int64_t first) {
         if (share->rows) rows[i] = share->rows + (first + i) * share->steps * share->count;
     }
     if (together < WORTH) return 0;
+    for (int64_t i = first + count; i < share->last && i < first + 2 * count; i++)
+        if (share->mask[i]) rig_fetch(share->batch->copies[i].rig);
     rig_step_together(share->lockstep, rigs, active, share->steps, share->references,
                       (size_t)share->count, share->rows ? rows : NULL, taken, found);
     for (int64_t i = 0; i < count; i++) {
