@@ -212,7 +212,7 @@ def _run(trials: Sequence[Trial], program: _Program, hooks: Hooks) -> list[Measu
     names = watched_signals(trial)
     ends = _Ends(trial, names, program.units)
     begun = batch.get(*names).reshape(_COPIES, 1, -1) if names else np.empty((_COPIES, 1, 0))
-    blocks, taken = [begun], 0
+    blocks, taken = [begun[: len(trials)]], 0
     ended: dict[int, tuple[str, int]] = {}
     """Of copies that are over before their time: status, and how many rows they have."""
     going = _first(len(trials))
@@ -224,7 +224,7 @@ def _run(trials: Sequence[Trial], program: _Program, hooks: Hooks) -> list[Measu
         count = min(_BLOCK, steps - taken)
         rows = batch.record(count, *names, mask=going)
         _look(rows, taken + 1, going, ends, ended, batch.failures)
-        blocks.append(rows)
+        blocks.append(rows[: len(trials)].copy())  # a long trial is measured alone
         taken += count
     table = np.ascontiguousarray(np.concatenate(blocks, axis=1).swapaxes(1, 2))
     instants = (trial.start_ns + np.arange(table.shape[2]) * trial.rig.step_ns) / NS
