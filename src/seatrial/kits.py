@@ -17,7 +17,7 @@ import importlib.util
 import sys
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, cached_property
 from pathlib import Path
 from typing import Any
 
@@ -113,6 +113,15 @@ class Kits:
         """Yield the parts of a kind, kit by kit."""
         for kit in self.found:
             yield from kit.entries.get(kind, ())
+
+    @cached_property
+    def by_name(self) -> Mapping[tuple[str, str], tuple[Entry, ...]]:
+        """Parts by kind and name."""
+        found: dict[tuple[str, str], tuple[Entry, ...]] = {}
+        for kind in KINDS:
+            for entry in self.entries(kind):
+                found[kind, entry.name] = (*found.get((kind, entry.name), ()), entry)
+        return found
 
     def hint(self) -> str:
         """Return what to add to a message that something is not found."""

@@ -17,7 +17,7 @@ from pkgutil import resolve_name
 from typing import Any
 
 from .errors import InputError, unknown
-from .kits import kits, lacking
+from .kits import Entry, kits, lacking
 
 
 class LibraryError(InputError):
@@ -55,7 +55,10 @@ class Registry:
 
     def target(self, name: str) -> str:
         """Return the ``module:attribute`` of a name. Raises InputError for none, or several."""
-        entries = [entry for entry in self._added() if entry.name == name]
+        entries = [
+            *map(_of_kit, kits().by_name.get((self._kind, name), ())),
+            *(each for each in _entries(self.group, tuple(sys.path)) if each.name == name),
+        ]
         found = [f"{entry.origin} ({entry.target})" for entry in entries]
         targets = [entry.target for entry in entries]
         if name in self.shipped:
@@ -91,11 +94,15 @@ class Registry:
         return (*self._of_kits(), *_entries(self.group, tuple(sys.path)))
 
     def _of_kits(self) -> tuple[_Entry, ...]:
-        kind = self.group.removeprefix("seatrial.")
-        return tuple(
-            _Entry(f"the kit {entry.kit}", entry.name, entry.target)
-            for entry in kits().entries(kind)
-        )
+        return tuple(map(_of_kit, kits().entries(self._kind)))
+
+    @property
+    def _kind(self) -> str:
+        return self.group.removeprefix("seatrial.")
+
+
+def _of_kit(entry: Entry) -> _Entry:
+    return _Entry(f"the kit {entry.kit}", entry.name, entry.target)
 
 
 @cache

@@ -105,16 +105,19 @@ def library(
 
 
 def library_here(
-    sources: Mapping[str, bytes], platform: str, libraries: Sequence[str] = ("-lm",)
+    sources: Mapping[str, bytes],
+    platform: str,
+    libraries: Sequence[str] = ("-lm",),
+    options: Sequence[str] = (),
 ) -> bytes:
     """Return the same for this machine's ``platform``, by its own compiler if it has one.
 
-    ``libraries`` are options of the linker.
+    ``libraries`` are options of the linker, ``options`` those of that compiler alone.
     """
     compiler = shutil.which("cc")
     if compiler is None:
         return library(sources, platform, libraries)
-    return _built(sources, [compiler], TARGETS[platform][1], platform, libraries)
+    return _built(sources, [compiler, *options], TARGETS[platform][1], platform, libraries)
 
 
 def _built(

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, lru_cache
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -418,9 +418,14 @@ def _check_algorithm(where: str, file: RigFile) -> None:
 def duration_ns(text: str, where: str) -> int:
     """Return a duration such as ``"10 ms"`` in whole nanoseconds; InputError says ``where``."""
     try:
-        value = quantity(text, "s")
+        value = _seconds(text)
     except InputError as error:
         raise InputError(f"{where}: {error}") from None
     if abs(value) > LONGEST_S:
         raise InputError(f"{where}: {text!r} is beyond {LONGEST_S:g} s")
     return round(value * NS)
+
+
+@lru_cache(256)
+def _seconds(text: str) -> float:
+    return quantity(text, "s")

@@ -34,11 +34,17 @@ typedef struct {
     int64_t count;
     Copy *copies;
     Work *works[MOST_THREADS]; /* of each thread: copies share it, their own operations would fill the caches */
+#if LANES
+    Lockstep *locksteps[MOST_THREADS]; /* of each thread; NULL where copies step one by one */
+#endif
 } Batch;
 
 typedef struct { /* what one thread does, for copies from `first`, before `last` */
     Batch *batch;
     Work *work;
+#if LANES
+    Lockstep *lockstep;
+#endif
     int64_t first, last, steps;
     const uint8_t *mask; /* of the copies that step */
     const uint32_t *references;
@@ -68,7 +74,12 @@ static void check(Copy *copy, fmi2Status status) {
 EXPORTED void batch_free(Batch *batch) {
     if (!batch) return;
     for (int64_t i = 0; i < batch->count; i++) fmi2FreeInstance(batch->copies[i].rig);
-    for (int k = 0; k < MOST_THREADS; k++) free(batch->works[k]);
+    for (int k = 0; k < MOST_THREADS; k++) {
+        free(batch->works[k]);
+#if LANES
+        rig_free_lockstep(batch->locksteps[k]);
+#endif
+    }
     free(batch->copies);
     free(batch);
 }
@@ -185,21 +196,67 @@ static void record(const Share *share, int64_t i) {
     }
 }
 
+static void step_alone(const Share *share, int64_t i) {
+    Copy *copy = share->batch->copies + i;
+    const double h = (double)(share->steps * STEP_NS) / 1e9;
+    if (copy->failed || !share->mask[i]) return;
+    rig_lend(copy->rig, share->work);
+    if (share->rows) {
+        record(share, i);
+    } else {
+        check(copy, fmi2DoStep(copy->rig, (double)(copy->steps * STEP_NS) / 1e9, h, 1));
+        copy->steps += share->steps;
+    }
+    rig_lend(copy->rig, share->batch->works[0]);
+}
+
+#if LANES
+enum { WORTH = 3 }; /* so many copies in lanes are faster than one by one */
+
+/* Let copies from `first` on step together, as many as can; return how many were passed. */
+static int64_t step_lanes(const Share *share, int64_t first) {
+    Copy *copies = share->batch->copies + first;
+    fmi2Component rigs[LANES] = {NULL};
+    unsigned char active[LANES] = {0};
+    double *rows[LANES] = {NULL};
+    int64_t taken[LANES], steps = -1, count = share->last - first;
+    fmi2Status found[LANES];
+    int together = 0;
+    if (count > LANES) count = LANES;
+    for (int64_t i = 0; i < count; i++) {
+        if (copies[i].failed || !share->mask[first + i]) continue;
+        if (steps < 0) steps = copies[i].steps;
+        if (copies[i].steps != steps) return 0;
+        active[i] = 1, together++;
+        rigs[i] = copies[i].rig;
+        if (share->rows) rows[i] = share->rows + (first + i) * share->steps * share->count;
+    }
+    if (together < WORTH) return 0;
+    for (int64_t i = first + count; i < share->last && i < first + 2 * count; i++)
+        if (share->mask[i]) rig_fetch(share->batch->copies[i].rig);
+    rig_step_together(share->lockstep, rigs, active, share->steps, share->references,
+                      (size_t)share->count, share->rows ? rows : NULL, taken, found);
+    for (int64_t i = 0; i < count; i++) {
+        if (!active[i]) continue;
+        check(copies + i, found[i]);
+        copies[i].steps += share->rows ? taken[i] : share->steps;
+    }
+    return count;
+}
+#endif
+
 static void *worked(void *given) {
     const Share *share = given;
-    const double h = (double)(share->steps * STEP_NS) / 1e9;
     for (int64_t i = share->first; i < share->last; i++) {
-        Copy *copy = share->batch->copies + i;
-        if (i + 1 < share->last && share->mask[i + 1]) rig_fetch(copy[1].rig);
-        if (copy->failed || !share->mask[i]) continue;
-        rig_lend(copy->rig, share->work);
-        if (share->rows) {
-            record(share, i);
-        } else {
-            check(copy, fmi2DoStep(copy->rig, (double)(copy->steps * STEP_NS) / 1e9, h, 1));
-            copy->steps += share->steps;
+#if LANES
+        const int64_t passed = share->lockstep ? step_lanes(share, i) : 0;
+        if (passed) {
+            i += passed - 1;
+            continue;
         }
-        rig_lend(copy->rig, share->batch->works[0]);
+#endif
+        if (i + 1 < share->last && share->mask[i + 1]) rig_fetch(share->batch->copies[i + 1].rig);
+        step_alone(share, i);
     }
     return NULL;
 }
@@ -219,6 +276,10 @@ EXPORTED void batch_step(Batch *batch, const uint8_t *mask, int64_t steps, int64
     for (int64_t k = 0; k < threads; k++) {
         if (!batch->works[k] && !(batch->works[k] = rig_new_work())) threads = k;
         shares[k].work = batch->works[k];
+#if LANES
+        if (!batch->locksteps[k]) batch->locksteps[k] = rig_new_lockstep();
+        shares[k].lockstep = batch->locksteps[k];
+#endif
     }
     for (int64_t k = 0; k < threads; k++) {
         shares[k].batch = batch, shares[k].mask = mask, shares[k].steps = steps;

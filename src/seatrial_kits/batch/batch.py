@@ -135,27 +135,28 @@ class Batch:
             count -= ahead
             before, failed = self._acted(before)
 
-    def record(self, count: int, *names: str) -> Floats:
+    def record(self, count: int, *names: str, mask: ArrayLike | None = None) -> Floats:
         """Take ``count`` communication steps, and return values after each, as `get` names them.
 
-        Shape (copies, count, elements); NaN from the step on in which a copy fails. Raises
-        InputError.
+        Shape (copies, count, elements); NaN from the step on in which a copy fails, and of copies
+        outside the ``mask`` (count,), which take none. Raises InputError.
         """
         import numpy as np
 
         self._refuse_closed()
-        references = self._settings.read(names)
+        references, chosen = self._settings.read(names), self._mask(mask)
         blocks, (before, failed) = [np.empty((self.count, 0, len(references)))], self._times()
         while count > 0:
-            ahead = count if failed.all() else self._course.ahead(before[~failed], count)
+            going = chosen & ~failed
+            ahead = self._course.ahead(before[going], count) if going.any() else count
             rows = np.full((self.count, ahead, len(references)), np.nan)
-            self._advance(ahead, self._mask(None), references, rows)
+            self._advance(ahead, chosen, references, rows)
             count -= ahead
             before, failed = self._acted(before)
             if self._course:  # the last row has what events of its time have made of it
                 last = np.empty((self.count, len(references)))
                 self._library.batch_get(self._batch, _at(references), len(references), _at(last))
-                rows[~failed, -1] = last[~failed]
+                rows[chosen & ~failed, -1] = last[chosen & ~failed]
             blocks.append(rows)
         return np.concatenate(blocks, axis=1)
 

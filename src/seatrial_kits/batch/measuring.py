@@ -1,4 +1,4 @@
-"""Trials measured one after the other in one compiled program, which starts anew for each."""
+"""Trials measured in the copies of one compiled program, which start anew for each."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import time
 from collections import Counter, OrderedDict
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,12 +28,17 @@ from seatrial.trial.running.measuring import Measured, verdict_row
 from seatrial.trial.running.stepping import watched_signals
 
 from .batch import Batch
+from .settings import Each
 
 Floats = NDArray[np.float64]
 
 _WORTH = 30
 """So many trials must share a program before it is compiled, which takes seconds."""
+_MANY = 300
+"""So many trials in all are worth a program for the first of them."""
 _MOST_PROGRAMS = 4
+_COPIES = 32
+"""Trials that a program measures at once."""
 _BLOCK = 2000
 """Communication steps between two looks at orders to stop, and at criteria that end a run."""
 
@@ -49,45 +54,85 @@ class _Program:
     values: Mapping[str, Any]
 
 
+class _Case(NamedTuple):
+    place: int
+    trial: Trial
+    values: dict[str, Any]
+    """Numbers of its own."""
+
+
 _SEEN: Counter[str] = Counter()
 """How many trials there were, by what they share."""
 _PROGRAMS: OrderedDict[str, _Program | None] = OrderedDict()
 """By what trials share; None: they have no program."""
 
 
-def measured(trial: Trial, hooks: Hooks) -> Measured | None:
-    """Measure a trial as `measure_trial` does with the engine "native"; None if C cannot.
+def measured(trials: Sequence[Trial], hooks: Hooks, planned: int = 1) -> list[Measured | None]:
+    """Measure trials as `measure_trial` does with the engine "native"; None for each that C cannot.
 
-    Then, and of a mistake or a failure, `measure_trial` says what there is to say. Verdicts and
-    figures have the same bytes. Raises StoppedError.
+    Of those, and of a mistake or a failure, `measure_trial` says what there is to say. Verdicts and
+    figures have the same bytes. Once a stop is asked for, the first of those under way has stopped.
+    ``planned`` is how many there are in all: the first of many have their program at once. Raises
+    StoppedError.
     """
-    if not _is_plain(trial):
-        return None
-    begun = time.perf_counter()
-    shared, values = _parted(trial)
-    _SEEN[shared] += 1
-    if _SEEN[shared] <= _WORTH:
-        return None
+    found: list[Measured | None] = [None] * len(trials)
+    alike: dict[str, list[_Case]] = {}
+    for place, trial in enumerate(trials):
+        if _is_plain(trial):
+            shared, values = _parted(trial)
+            _SEEN[shared] += 1
+            alike.setdefault(shared, []).append(_Case(place, trial, values))
+    for shared, cases in alike.items():
+        first_of_many = planned > _MANY and (not _PROGRAMS or shared in _PROGRAMS)
+        while (first_of_many or _SEEN[shared] > _WORTH) and cases:
+            now, cases = cases[:_COPIES], cases[_COPIES:]
+            for case, each in zip(now, _measured(shared, now, hooks), strict=True):
+                found[case.place] = each
+    return found
+
+
+def _measured(shared: str, cases: Sequence[_Case], hooks: Hooks) -> list[Measured | None]:
+    """Measure cases that share a program, no more than it has copies."""
     with hooks.interruptible():
+        program = _program(shared, cases[0].values, cases[0].trial)
+        begun = time.perf_counter()
+        if program is None:
+            return [None] * len(cases)
         try:
-            program = _program(shared, values, trial)
-            if program is None:
-                return None
-            fresh = {k: v for k, v in values.items() if k not in program.built_in}
-            program.batch.reset(set=fresh, seed=[trial.file.seed])
+            _start(program, cases)
         except InputError:
-            return None
+            alone = len(cases) == 1
+            return [None if alone else _measured(shared, [case], hooks)[0] for case in cases]
     hooks.refuse_if_stopped()
     hooks.assembled(program.batch.system, {"components": dict.fromkeys(program.batch.system.parts)})
     hooks.begun()
     try:
         with hooks.interruptible():
-            found = _run(trial, program, hooks)
+            found = _run([case.trial for case in cases], program, hooks)
     except KeyboardInterrupt:
-        found = Measured("stopped", None, trial.file.seed)
-    if found is not None:
-        found.wall = time.perf_counter() - begun
+        found = [Measured("stopped", None, cases[0].trial.file.seed), *[None] * (len(cases) - 1)]
+    for each in filter(None, found):
+        each.wall = (time.perf_counter() - begun) / len(cases)
     return found
+
+
+def _start(program: _Program, cases: Sequence[_Case]) -> None:
+    """Start a copy for each case. Raises InputError."""
+    for key in program.built_in:
+        if any(case.values[key] != program.values[key] for case in cases):
+            raise InputError(f"{key} is built into the program")
+    copies = [*cases, *[cases[0]] * (_COPIES - len(cases))]
+    fresh = [key for key in cases[0].values if key not in program.built_in]
+    program.batch.reset(
+        _first(len(cases)),
+        set={key: Each([case.values[key] for case in copies]) for key in fresh},
+        seed=[case.trial.file.seed for case in copies],
+    )
+
+
+def _first(count: int) -> NDArray[np.bool_]:
+    """Return the mask of the first copies."""
+    return np.arange(_COPIES) < count
 
 
 def _is_plain(trial: Trial) -> bool:
@@ -116,7 +161,7 @@ def _parted(trial: Trial) -> tuple[str, dict[str, Any]]:
         else:
             rest.append((key, repr(written)))
     rig = trial.rig.read_from.path, repr(trial.rig_changes)
-    shared = repr((trial.read_from.path, rig, content, rest))
+    shared = repr((trial.read_from.path, rig, content, rest, trial.figures))
     return hashlib.sha256(
         shared.encode()
     ).hexdigest(), values  # short: there may be as many as cases
@@ -150,7 +195,7 @@ def _program(shared: str, values: Mapping[str, Any], trial: Trial) -> _Program |
 
 
 def _made(trial: Trial, values: Mapping[str, Any]) -> _Program:
-    batch = Batch(trial, 1)
+    batch = Batch(trial, _COPIES)
     try:
         units = check_criteria(by_path(trial, batch.system), batch.system)
         built_in = frozenset(key for key in values if batch.is_built_in(key))
@@ -160,44 +205,83 @@ def _made(trial: Trial, values: Mapping[str, Any]) -> _Program:
     return _Program(batch, units, built_in, values)
 
 
-def _run(trial: Trial, program: _Program, hooks: Hooks) -> Measured | None:
-    trial = by_path(trial, program.batch.system)
+def _run(trials: Sequence[Trial], program: _Program, hooks: Hooks) -> list[Measured | None]:
+    """Step copies that have started, one for each trial, and return what these come to."""
+    trial = by_path(trials[0], program.batch.system)  # others differ in numbers of components
+    batch, steps, seeds = program.batch, trial.steps, [each.file.seed for each in trials]
     names = watched_signals(trial)
-    batch, steps, seed = program.batch, trial.steps, trial.file.seed
     ends = _Ends(trial, names, program.units)
-    blocks = [batch.get(*names).reshape(1, -1) if names else np.empty((1, 0))]
-    if batch.failures:  # an event of the start has ended it, as its values show once they are read
-        return None
-    taken, status = 0, ends.status(blocks[0])[0]
-    while status is None and taken < steps:
+    begun = batch.get(*names).reshape(_COPIES, 1, -1) if names else np.empty((_COPIES, 1, 0))
+    blocks, taken = [begun[: len(trials)]], 0
+    ended: dict[int, tuple[str, int]] = {}
+    """Of copies that are over before their time: status, and how many rows they have."""
+    going = _first(len(trials))
+    # An event of the start may have ended one, as its values show once they are read.
+    _look(begun, 0, going, ends, ended, batch.failures)
+    while going.any() and taken < steps:
         if hooks.stop_requested():
-            return Measured("stopped", None, seed)
+            return [Measured("stopped", None, seeds[0]), *[None] * (len(trials) - 1)]
         count = min(_BLOCK, steps - taken)
-        rows = batch.record(count, *names)[0]
-        if batch.failures:
-            return None
-        status, row = ends.status(rows)
-        blocks.append(rows[: row + 1] if status else rows)
+        rows = batch.record(count, *names, mask=going)
+        _look(rows, taken + 1, going, ends, ended, batch.failures)
+        blocks.append(rows[: len(trials)].copy())  # a long trial is measured alone
         taken += count
-    table = np.concatenate(blocks)
-    step_ns = trial.rig.step_ns
-    instants = (trial.start_ns + np.arange(len(table)) * step_ns) / NS
-    columns = {name: np.ascontiguousarray(table[:, i]) for i, name in enumerate(names)}
+    table = np.ascontiguousarray(np.concatenate(blocks, axis=1).swapaxes(1, 2))
+    instants = (trial.start_ns + np.arange(table.shape[2]) * trial.rig.step_ns) / NS
+    found: list[Measured | None] = []
+    for copy, seed in enumerate(seeds):
+        status, length = ended.get(copy, ("complete", table.shape[2]))
+        if not going[copy] and copy not in ended:
+            found.append(None)
+            continue
+        columns = {name: table[copy, i, :length] for i, name in enumerate(names)}
+        found.append(_come_to(status, seed, trial, instants[:length], columns, program.units))
+    return found
+
+
+def _look(
+    rows: Floats,
+    before: int,
+    going: NDArray[np.bool_],
+    ends: _Ends,
+    ended: dict[int, tuple[str, int]],
+    failures: Mapping[int, str],
+) -> None:
+    """Note which of the copies that go on are over at one of the rows; ``before`` came earlier."""
+    for copy in np.flatnonzero(going).tolist():
+        status, row = (None, 0) if copy in failures else ends.status(rows[copy])
+        if status is not None:
+            ended[copy] = status, before + row + 1
+        going[copy] = status is None and copy not in failures
+
+
+def _come_to(
+    status: str,
+    seed: int,
+    trial: Trial,
+    instants: Floats,
+    columns: Mapping[str, Floats],
+    units: Mapping[str, str],
+) -> Measured:
     verdicts = [
-        verdict_row(name, entry.check, _verdict(criterion, entry, instants, columns, program))
+        verdict_row(name, entry.check, _verdict(criterion, entry, instants, columns, units))
         for entry, (name, criterion) in zip(trial.file.criteria, trial.criteria, strict=True)
     ]
     figures = [
         [float(c.min()), float(c.max()), float(c[-1])]
         for c in (columns[name] for name in trial.figures)
     ]
-    return Measured(status or "complete", None, seed, verdicts, figures)
+    return Measured(status, None, seed, verdicts, figures)
 
 
 def _verdict(
-    criterion: Criterion, entry: Any, instants: Floats, columns: Mapping[str, Floats], of: _Program
+    criterion: Criterion,
+    entry: Any,
+    instants: Floats,
+    columns: Mapping[str, Floats],
+    units: Mapping[str, str],
 ) -> Any:
-    verdict = criterion.evaluate(instants, columns, of.units)
+    verdict = criterion.evaluate(instants, columns, units)
     return replace(verdict, expected=entry.expect, why=entry.why)
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -15,17 +16,31 @@ from seatrial.errors import InputError, unknown
 from seatrial.fmi.components.source import ComponentSource, find_source
 from seatrial.fmi.instance import Variable
 from seatrial.model.plant import Plant
+from seatrial.physics.craft.surrounded import SurroundedPlant
 from seatrial.system.assembling.component_parameters import derived_seeds, seed_of
 from seatrial.system.part import Part
 from seatrial.system.references.values import check_limits, from_written, port_names, port_scalars
 from seatrial.system.system import System
-from seatrial_kits.native.surroundings import Met, is_surrounded, surroundings_of
+from seatrial_kits.native.surroundings import (
+    Met,
+    is_surrounded,
+    met_with,
+    plant_of,
+    surroundings_of,
+)
 from seatrial_kits.native.tables import WEATHER_ROLES
 from seatrial_kits.native.tables import is_built_in as built_in_port
 
 Floats = NDArray[np.float64]
 _MOST_SEAS = 256
 """That are kept for copies to come, whatever the number of copies: some hundred kB each."""
+
+
+@dataclass(frozen=True)
+class Each:
+    """What is written for each copy, as a trial's file has it."""
+
+    written: Sequence[Any]
 
 
 class Settings:
@@ -48,6 +63,8 @@ class Settings:
         self._rows: dict[str, Floats] = {}
         """What was set, by scalar, each (count,)."""
         self._met: dict[tuple[Any, ...], Met | None] = {}
+        self._calm: dict[str, SurroundedPlant] = {}
+        """Plants that had nothing around them: most settings change nothing in that."""
         self._seeded: tuple[NDArray[np.int64], dict[str, Floats]] = (np.empty(0, np.int64), {})
         self._known: dict[tuple[str, ...], NDArray[np.uint32]] = {}
 
@@ -98,6 +115,11 @@ class Settings:
         for whole, scalar in scalars:
             if scalar.causality == "output" and call != "override":
                 raise InputError(f"{call}: {whole} is an output; it can be overridden")
+        if isinstance(value, Each):
+            known, origin = {repr(each): each for each in value.written}, f"{call}: {name}"
+            read = {key: self._read(part, scalars, w, origin) for key, w in known.items()}
+            stacked = np.array([read[repr(each)] for each in value.written])
+            return {whole: stacked[:, i] for i, (whole, _) in enumerate(scalars)}
         rows: NDArray[Any] = np.array(0.0 if isinstance(value, str) else value)
         if rows.dtype.kind in "fiub" and rows.ndim and rows.shape[0] == self._count:
             wanted = (self._count,) if len(scalars) == 1 else (self._count, len(scalars))
@@ -109,12 +131,17 @@ class Settings:
                 f"{len(scalars)} element{'s' * (len(scalars) != 1)}, a row for each copy "
                 f"({self._count}, {len(scalars)})"
             )
+        numbers = self._read(part, scalars, value, f"{call}: {name}")
+        pairs = zip(scalars, numbers, strict=True)
+        return {whole: np.full(self._count, number) for (whole, _), number in pairs}
+
+    def _read(
+        self, part: Part, scalars: Sequence[tuple[str, Variable]], value: Any, origin: str
+    ) -> list[float]:
+        """Return the numbers of what is written of a port."""
         presets = part.presets.get(self._port_of(part, scalars), {})
-        found = from_written(as_written(value), [s for _, s in scalars], presets, f"{call}: {name}")
-        return {
-            whole: np.full(self._count, float(found[scalar.name].value))
-            for whole, scalar in scalars
-        }
+        found = from_written(as_written(value), [s for _, s in scalars], presets, origin)
+        return [float(found[scalar.name].value) for _, scalar in scalars]
 
     def _port_of(self, part: Part, scalars: Sequence[tuple[str, Variable]]) -> str:
         return part.instance.variables.port_of(scalars[0][1].name)
@@ -224,19 +251,29 @@ class Settings:
                 and _is_met(source, part.instance.variables[whole.removeprefix(f"{name}.")])
             }
             found[name] = [
-                self._meets(name, source, {**values, **{k: v[i] for k, v in changed.items()}})
+                self._meets(name, source, values, {k: float(v[i]) for k, v in changed.items()})
                 if mask[i]
                 else None
                 for i in range(self._count)
             ]
         return found
 
-    def _meets(self, name: str, source: ComponentSource, values: dict[str, Any]) -> Met | None:
-        key = name, *sorted(values.items(), key=lambda item: item[0])
+    def _meets(
+        self, name: str, source: ComponentSource, values: dict[str, Any], own: dict[str, float]
+    ) -> Met | None:
+        """Return what surrounds a plant with its values, and those of a copy."""
+        key = name, *own.items()
         if key not in self._met:
             if len(self._met) > max(_MOST_SEAS, 4 * self._count):
                 self._met.clear()  # those in use are kept by the copies
-            self._met[key] = surroundings_of(source, values)
+            calm = self._calm.get(name)
+            if calm is None or met_with(calm, own) is not None:
+                self._met[key] = surroundings_of(source, {**values, **own})
+            else:
+                self._met[key] = None
+            if calm is None and self._met[key] is None:
+                self._calm[name] = plant_of(source)
+                met_with(self._calm[name], {**values, **own})
         return self._met[key]
 
     def noise(self, seeds: NDArray[np.int64]) -> tuple[NDArray[np.uint32], Floats]:

@@ -177,6 +177,7 @@ def run_task(
         evaluator = Evaluator(cases, plan, home=top)
     if question is not None:
         evaluator.expect(question[1])
+    evaluator.foresee(task)
     try:
         with tempfile.TemporaryDirectory(prefix="seatrial-cases-") as below:
             return [_ended(evaluator, number, Path(below)) for number in task]

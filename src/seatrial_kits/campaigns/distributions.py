@@ -219,14 +219,37 @@ def _numbers(written: list[Written], spread: bool, here: str) -> tuple[list[floa
     return numbers, unit
 
 
-def _law(form: str, numbers: list[float], here: str) -> Any:
-    """Return SciPy's distribution of a form."""
-    from scipy import stats  # half a second, of every command if it stood above
+@dataclass(frozen=True)
+class _Scaled:
+    """A standard distribution that is stretched and moved."""
 
+    location: float
+    scale: float
+    quantile: Callable[[np.ndarray], np.ndarray]
+    probability: Callable[[float], Any]
+
+    def ppf(self, probability: np.ndarray) -> np.ndarray:
+        """Return the values below which it is with these probabilities."""
+        return self.quantile(probability) * self.scale + self.location
+
+    def cdf(self, value: float) -> Any:
+        """Return the probability to be below a value."""
+        return self.probability((value - self.location) / self.scale)
+
+
+def _law(form: str, numbers: list[float], here: str) -> Any:
+    """Return a form's ``ppf`` and ``cdf``, with the bits of SciPy's."""
     a, b = numbers[:2]
     if form == "uniform":
         _needed(b > a, "low below high", here, numbers)
-        return stats.uniform(a, b - a)
+        return _Scaled(a, b - a, lambda p: p, lambda x: np.clip(x, 0.0, 1.0))
+    if form == "normal":
+        from scipy import special  # dear to import, and no other command needs it
+
+        _needed(b > 0.0, "a positive standard deviation", here, numbers)
+        return _Scaled(a, b, special.ndtri, special.ndtr)
+    from scipy import stats  # half a second more
+
     if form == "triangular":
         high = numbers[2]
         _needed(a <= b <= high and a < high, "low, mode, high in that order", here, numbers)
@@ -240,8 +263,6 @@ def _law(form: str, numbers: list[float], here: str) -> Any:
         }
         return laws[form]
     _needed(b > 0.0, "a positive standard deviation", here, numbers)
-    if form == "normal":
-        return stats.norm(a, b)
     _needed(a > 0.0, "a positive mean", here, numbers)
     spread = math.sqrt(math.log1p((b / a) ** 2))  # of the logarithm
     return stats.lognorm(spread, scale=a * math.exp(-(spread**2) / 2.0))

@@ -18,7 +18,7 @@ from seatrial.trial.files.trial import Trial
 from seatrial.trial.running.hooks import BeyondLimitError, Hooks, InterruptedRun, StoppedError
 from seatrial.trial.running.measuring import Measured, measured_of
 from seatrial.trial.running.run import Result
-from seatrial.trial.running.supervision import Order, Outcome, Supervisor
+from seatrial.trial.running.supervision import Changes, Order, Outcome, Supervisor
 
 from .asked import Asked
 from .case_list import Cases
@@ -88,6 +88,8 @@ class Evaluator:
         else:
             trials, alike = _Trials(cases), [block.case(0).trial for block in cases.blocks]
         self._supervisor = Supervisor(trials, plan.engine, hooks, alike=alike)
+        self._ahead: Sequence[int] = ()
+        self._foreseen: dict[int, Measured] = {}
 
     def __enter__(self) -> Evaluator:
         return self
@@ -100,12 +102,21 @@ class Evaluator:
         assert isinstance(self._cases, Asked)
         self._cases.rows.update(rows)
 
+    def foresee(self, numbers: Sequence[int]) -> None:
+        """Take the numbers of cases that will be asked for next: some are measured together."""
+        self._ahead = numbers if self._plan.engine == "native" and not self._plan.recorded else ()
+
     def check(self, number: int) -> bool:
         """Return whether a case must run alone. Raises what `Supervisor.check` raises."""
         return self._carried_out("check", number) is True
 
     def measured(self, number: int) -> Measured:
         """Measure a case. Raises what `Supervisor.measure` raises."""
+        ahead, self._ahead = self._ahead, ()  # if their process dies, each gets its own
+        if ahead:
+            self._foreseen = self._together(ahead)
+        if number in self._foreseen:
+            return self._foreseen.pop(number)
         measured = self._carried_out("measure", number)
         assert isinstance(measured, Measured)
         return measured
@@ -133,6 +144,18 @@ class Evaluator:
 
     # ------------------------------------------------------------------ inside
 
+    def _together(self, numbers: Sequence[int]) -> dict[int, Measured]:
+        """Measure cases that can share a program, in one order; return what was found."""
+        try:
+            found = self._carried_out("measure together", numbers[0], several=numbers)
+        except StoppedError:
+            raise
+        except SimulationError:
+            return {}
+        assert isinstance(found, list)
+        pairs = zip(numbers, found, strict=False)
+        return {number: each for number, each in pairs if each is not None}
+
     def _attempted(self, number: int, folder: Path) -> tuple[Measured, bool]:
         """Return what a case comes to, and whether it ran into its folder."""
         if not self._plan.recorded:
@@ -159,18 +182,25 @@ class Evaluator:
         assert isinstance(result, Result)
         return measured_of(result)
 
-    def _carried_out(self, what: Order, number: int, folder: Path | None = None) -> Outcome:
-        changes = None
-        if isinstance(self._cases, Asked):
-            number, changes = 0, self._cases.changes(number)
+    def _carried_out(
+        self, what: Order, number: int, folder: Path | None = None, several: Sequence[int] = ()
+    ) -> Outcome:
+        placed = [self._placed(each) for each in several]
+        number, changes = self._placed(number)
         with _FORKING, chdir(self._home):
-            self._supervisor.begin(what, number, folder, changes)
+            self._supervisor.begin(what, number, folder, changes, placed)
         try:
             while (outcome := self._supervisor.poll()) is None:
                 pass
         except InterruptedRun:
             raise StoppedError("stopped before the run began; nothing was written") from None
         return outcome
+
+    def _placed(self, number: int) -> tuple[int, Changes | None]:
+        """Return which of its trials the supervisor takes for a case, and what changes in it."""
+        if isinstance(self._cases, Asked):
+            return 0, self._cases.changes(number)
+        return number, None
 
 
 @contextmanager

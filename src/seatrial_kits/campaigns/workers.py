@@ -17,6 +17,10 @@ from .ended import Ended
 from .evaluator import Evaluator, Plan
 from .pool import cores
 
+_TASK_S = 0.5
+"""s of wall time, in which nothing is seen of a task's cases."""
+_MOST_CASES = 32
+
 Task = Sequence[int]
 """Numbers of cases that are run one after the other; one, unless they are short."""
 
@@ -46,6 +50,7 @@ class Here:
 
     def __init__(self, cases: Cases | Asked, plan: Plan, jobs: int | None, hooks: Hooks) -> None:
         self._closing = False
+        self._shares = plan.engine == "native" and not plan.recorded
         count = 1
         if hasattr(os, "fork") and not plan.recorded:
             count = jobs or cores()
@@ -64,8 +69,8 @@ class Here:
         self.places = 2 * count
 
     def size(self, wall: float) -> int:
-        """Return 1: a task costs nothing here."""
-        return 1
+        """Return how many cases make a task of `_TASK_S`, if they may share a program, else 1."""
+        return min(max(1, int(_TASK_S / max(wall, 1e-6))), _MOST_CASES) if self._shares else 1
 
     def submit(self, task: Task, below: Path) -> Future[list[Ended | None]]:
         """Begin a task."""
@@ -84,6 +89,7 @@ class Here:
 
     def _ended(self, task: Task, below: Path) -> list[Ended | None]:
         evaluator = self._idle.get()
+        evaluator.foresee(task)
         try:
             return [evaluator.ended(number, below) for number in task]
         finally:

@@ -12,6 +12,7 @@ from seatrial.model.plant import Plant
 from seatrial.model.ports import Port
 from seatrial.physics.craft.surrounded import SurroundedPlant
 
+from .lanes import lanes
 from .tables import table, tables
 
 _HEADER = """\
@@ -124,7 +125,8 @@ def model(plant: Plant, surrounded: bool) -> str:
     ]
     text = f'{generator.dump()}\n#include "component.h"\n'
     calls = [_called(name, of, compiled[name]) for name, of in _functions(surrounded).items()]
-    return "\n".join([text, *calls, *own, tables(plant, surrounded=surrounded)])
+    whole = [text, *calls, *own, tables(plant, surrounded=surrounded), lanes(still)]
+    return "\n".join(whole)
 
 
 def _functions(surrounded: bool) -> dict[str, tuple[str, ...]]:

@@ -116,7 +116,7 @@ def _sources(
                 "wind among its parameters"
             )
         text, own = model(component, surrounded), plant_header(component, surrounded)
-        parts = ["plant.c"]
+        parts = ["plant.c", "together.inc", "sines.inc"]
     else:
         translation = Translation(component)
         checked(made(), name)

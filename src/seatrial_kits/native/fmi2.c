@@ -84,11 +84,15 @@ static int is_allowed(Instance *self, unsigned reference, double value) {
     return 0;
 }
 
-static int are_finite(Instance *self) {
-    const double *values = self->state.values;
+static int are_all_finite(const double *values) {
     double sum = 0.0;
     for (int i = 0; i < CHECKED; i++) sum += values[model_checked[i]] * 0.0;
-    if (sum == 0.0) return 1;
+    return sum == 0.0;
+}
+
+static int are_finite(Instance *self) {
+    const double *values = self->state.values;
+    if (are_all_finite(values)) return 1;
     for (int i = 0; i < CHECKED; i++) {
         const int r = model_checked[i];
         if (isfinite(values[r])) continue;
@@ -105,11 +109,16 @@ static int is_well(Instance *self) {
     return 0;
 }
 
-static int set_outputs(Instance *self) {
-    model_outputs(self, now(self));
+/* Take outputs as they are published now, if they may be. */
+static int take_outputs(Instance *self) {
     if (!is_well(self) || !are_finite(self)) return 0;
     self->state.stale = 0;
     return 1;
+}
+
+static int set_outputs(Instance *self) {
+    model_outputs(self, now(self));
+    return take_outputs(self);
 }
 
 static int refresh(Instance *self) {
@@ -259,9 +268,8 @@ fmi2Status fmi2Reset(fmi2Component c) {
     return fmi2OK;
 }
 
-fmi2Status fmi2DoStep(fmi2Component c, fmi2Real t, fmi2Real h, fmi2Boolean no_earlier) {
-    (void)no_earlier;
-    Instance *self = c;
+/* Return whether a step is possible; time is that of its beginning then. */
+static fmi2Status begin_step(Instance *self, double t, double h) {
     State *state = &self->state;
     const double slack = h / 100.0 > 1.0 / NS ? h / 100.0 : 1.0 / NS; /* of hosts that add up steps */
     if (state->phase != RUNNING || !(h > 0.0 && h < LATEST) || !(fabs(t) < LATEST)) {
@@ -277,13 +285,27 @@ fmi2Status fmi2DoStep(fmi2Component c, fmi2Real t, fmi2Real h, fmi2Boolean no_ea
         say(self, "%s: step refused after an earlier error", self->name);
         return fmi2Discard;
     }
-    const long long h_ns = __builtin_llrint(h * NS), given = __builtin_llrint(t * NS), grain = h_ns / 100;
+    const long long given = __builtin_llrint(t * NS), grain = __builtin_llrint(h * NS) / 100;
     if (llabs(given - state->now_ns) > (grain > 1 ? grain : 1)) state->now_ns = given;
-    model_step(self, now(self), (double)h_ns / NS);
-    state->now_ns += h_ns;
-    state->failed = !is_well(self) || !set_outputs(self);
+    return fmi2OK;
+}
+
+static fmi2Status end_step(Instance *self, double t, double h, int has_outputs) {
+    State *state = &self->state;
+    state->failed = !has_outputs;
     if (!state->failed) state->reached = t + h;
     return state->failed ? fmi2Discard : fmi2OK;
+}
+
+fmi2Status fmi2DoStep(fmi2Component c, fmi2Real t, fmi2Real h, fmi2Boolean no_earlier) {
+    (void)no_earlier;
+    Instance *self = c;
+    const fmi2Status status = begin_step(self, t, h);
+    if (status != fmi2OK) return status;
+    const long long h_ns = __builtin_llrint(h * NS);
+    model_step(self, now(self), (double)h_ns / NS);
+    self->state.now_ns += h_ns;
+    return end_step(self, t, h, is_well(self) && set_outputs(self));
 }
 
 fmi2Status fmi2CancelStep(fmi2Component c) {

@@ -49,22 +49,33 @@ def surroundings_of(source: ComponentSource, values: Mapping[str, Any]) -> Met |
     None for another component, and with nothing around it. Raises InputError for a sea, a current
     or a wind that cannot be.
     """
-    cls = source.component_class()
-    if not issubclass(cls, SurroundedPlant):
+    if not is_surrounded(source):
         return None
-    plant = cls(source.name)
-    for name, value in values.items():
-        plant.set(name, value)
-    plant.setup(0.0)
-    met, states, size = plant.met(), _size(cls.state_ports), _size(cls.surrounding_ports)
+    plant = plant_of(source)
+    met = met_with(plant, values)
     if met is None:
         return None
     around = getattr(met, "__self__", None)
-    if type(around) is Around and around.size == size:
+    if type(around) is Around and around.size == _size(plant.surrounding_ports):
         weather = WeatherInC(around)
         return Met(weather_at(), weather.address, weather)
-    called = _called(met, states)
+    called = _called(met, _size(plant.state_ports))
     return Met(ctypes.cast(called, ctypes.c_void_p).value, None, called)
+
+
+def plant_of(source: ComponentSource) -> SurroundedPlant:
+    """Return a plant of a class that `is_surrounded`, as it is without values."""
+    plant = source.component_class()(source.name)
+    assert isinstance(plant, SurroundedPlant)
+    return plant
+
+
+def met_with(plant: SurroundedPlant, values: Mapping[str, Any]) -> Surroundings | None:
+    """Return what surrounds a plant once ``values`` are set, None: nothing. Raises InputError."""
+    for name, value in values.items():
+        plant.set(name, value)
+    plant.setup(0.0)
+    return plant.met()
 
 
 def _size(ports: Sequence[Port]) -> int:

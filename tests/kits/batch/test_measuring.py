@@ -68,6 +68,11 @@ def singly(trial: Trial, monkeypatch: pytest.MonkeyPatch) -> Measured:
         return measure_trial(trial, engine="native")
 
 
+def alone(trial: Trial, hooks: Hooks | None = None) -> Measured | None:
+    [found] = measuring.measured([trial], hooks or Hooks())
+    return found
+
+
 def same(a: Measured, b: Measured) -> bool:
     return {**asdict(a), "wall": 0.0} == {**asdict(b), "wall": 0.0}
 
@@ -89,22 +94,40 @@ def test_verdicts_and_figures_are_those_of_single_runs(
     for case in cases:
         trial = base.changed(case, "test")
         expected = singly(trial, monkeypatch)
-        found = measuring.measured(trial, Hooks())
+        found = alone(trial)
         assert found is not None
         assert same(found, expected), case
         statuses.add(found.status)
     assert statuses == {"complete", "ended"}
     assert len(programs) == 4  # by the names of numbers, and by texts
-    again = measuring.measured(base.changed(cases[0], "test"), Hooks())
+    again = alone(base.changed(cases[0], "test"))
     assert again is not None
     assert same(again, singly(base.changed(cases[0], "test"), monkeypatch))
+
+
+def test_cases_measured_at_once_are_those_of_single_runs(
+    base: Trial, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    cases = [
+        {"cork.mass": 0.3 + 0.1 * i, "seed": i, "cork.drag": f"{i % 3} N.s/m"} for i in range(35)
+    ]
+    cases[4] |= {"cork.mass": 500.0}
+    cases[7] |= {"cork.mass": 0.0}  # a mistake
+    cases[9] |= {"cork.form": "square"}  # of another program
+    cases[20] |= {"pilot.reach": 0.01}  # fails in the run
+    trials = [base.changed({"pilot.reach": 1e9, **case}, "test") for case in cases]
+    found = measuring.measured(trials, Hooks())
+    assert [i for i, each in enumerate(found) if each is None] == [7, 20]
+    for trial, each in zip(trials, found, strict=True):
+        assert each is None or same(each, singly(trial, monkeypatch))
+    assert {each.status for each in found if each} == {"complete", "ended"}
 
 
 def test_each_case_has_its_own_sea(monkeypatch: pytest.MonkeyPatch, programs: Any) -> None:
     trial = load_trial("hydrone-landing-waves", changes={"stop": "3 s"}, origin="test")
     for height, seed in ((0.1, 1), ("20 cm", 1), (0.2, 5)):
         case = trial.changed({"sea.height": height, "seed": seed}, "test")
-        found = measuring.measured(case, Hooks())
+        found = alone(case)
         assert found is not None
         assert same(found, singly(case, monkeypatch))
     assert len(programs) == 1
@@ -115,7 +138,7 @@ def test_a_signal_may_have_the_name_that_a_rig_inside_shows(
 ) -> None:
     trial = load_trial("hydrone-landing-waves", changes={"stop": "1 s"}, origin="test")
     case = replace(trial, figures=("vehicle.motion.position.x",))
-    found = measuring.measured(case, Hooks())
+    found = alone(case)
     assert found is not None
     assert same(found, singly(case, monkeypatch))
 
@@ -129,18 +152,18 @@ def test_a_signal_may_have_the_name_that_a_rig_inside_shows(
     ],
 )
 def test_what_goes_wrong_is_left_to_a_single_run(base: Trial, changes: dict[str, Any]) -> None:
-    assert measuring.measured(base.changed(changes, "test"), Hooks()) is None
+    assert alone(base.changed(changes, "test")) is None
 
 
 def test_a_bias_is_left_to_a_single_run(base: Trial) -> None:
     fault = {"what": "bias", "where": "cork.x", "value": 0.1, "at": "100 ms"}
-    assert measuring.measured(base.failing([fault], "test"), Hooks()) is None
+    assert alone(base.failing([fault], "test")) is None
 
 
 def test_a_stop_ends_it(base: Trial) -> None:
     with pytest.raises(StoppedError):
-        measuring.measured(base, Hooks(stop_requested=lambda: 1))
+        alone(base, Hooks(stop_requested=lambda: 1))
     orders = iter([0, 1])
-    stopped = measuring.measured(base, Hooks(stop_requested=lambda: next(orders)))
+    stopped = alone(base, Hooks(stop_requested=lambda: next(orders)))
     assert stopped is not None
     assert stopped.status == "stopped"

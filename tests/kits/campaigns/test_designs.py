@@ -12,6 +12,7 @@ from scipy.stats import qmc
 
 from seatrial.errors import InputError
 from seatrial_kits.campaigns.designs import Design, drawn
+from seatrial_kits.campaigns.distributions import Distribution, read_distribution
 
 
 def numbers(key: str = "a", **content: Any) -> np.ndarray:
@@ -300,3 +301,21 @@ def test_mistakes_in_bins(entry: Any, said: str) -> None:
 def test_a_design_without_a_key_is_refused() -> None:
     with pytest.raises(InputError, match="nothing varies"):
         drawn(Design.model_validate({"kind": "monte-carlo", "count": 4}), "here")
+
+
+@pytest.mark.parametrize(
+    ("form", "law"),
+    [
+        ({"uniform": [1.3, 6.1]}, stats.uniform(1.3, 6.1 - 1.3)),
+        ({"normal": [22.0, 0.7]}, stats.norm(22.0, 0.7)),
+    ],
+)
+@pytest.mark.parametrize("between", [None, [2.0, 21.7]])
+def test_numbers_have_the_bits_of_scipy(form: Any, law: Any, between: list[float] | None) -> None:
+    read = read_distribution(Distribution.model_validate({**form, "between": between}), "here")
+    p = np.random.default_rng(1).random(10_000)
+    if between is None:
+        assert (read.quantiles(p) == law.ppf(p)).all()
+        return
+    low, high = law.cdf(between)
+    assert (read.quantiles(p) == np.clip(law.ppf(low + (high - low) * p), *between)).all()

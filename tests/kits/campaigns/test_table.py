@@ -9,7 +9,7 @@ from pathlib import Path
 import pandas as pd
 import pyarrow.parquet as pq
 import pytest
-from scipy.stats import beta
+from scipy.stats import beta, binomtest
 
 import seatrial
 from seatrial.errors import InputError
@@ -171,6 +171,8 @@ def test_intervals_are_those_of_the_books(failed, count):
     assert failure_interval(failed, count) == pytest.approx(
         (centre - half, centre + half), abs=1e-9
     )
+    scipys = binomtest(failed, count).proportion_ci(0.95, method="wilson")
+    assert failure_interval(failed, count) == pytest.approx(tuple(scipys), rel=1e-13)
     low = beta.ppf(0.025, failed, count - failed + 1) if failed else 0.0
     exact = (low, beta.ppf(0.975, failed + 1, count - failed))
     assert failure_interval(failed, count, interval="clopper-pearson") == pytest.approx(

@@ -378,6 +378,13 @@ static int diverges(Pace *p, const double *signals, int64_t steps) {
 
 /* ------------------------------------------------------------------ steps */
 
+/* Say when a step of a component begins and how long it is, s. */
+static inline void span_of(const Master *m, const Operation *o, double *t, double *h) {
+    const int64_t at_ns = m->begin_ns + o->start;
+    *t = (double)at_ns / 1e9;
+    *h = o->constant ? (double)o->length / 1e9 : (double)(at_ns + o->length) / 1e9 - *t;
+}
+
 /* Carry out what is left of a step; return DONE at its end. */
 static int finish_step(Master *m) {
     int64_t begun = -1; /* when the call before ended, if a step was the operation before */
@@ -400,18 +407,14 @@ static int finish_step(Master *m) {
             begun = -1;
             break;
         case STEP: {
-            const int64_t at_ns = m->begin_ns + o->start;
             double t = t_whole, h = h_whole;
-            if (o->constant || o->start || o->length != m->step_ns) {
-                t = (double)at_ns / 1e9;
-                h = o->constant ? (double)o->length / 1e9 : (double)(at_ns + o->length) / 1e9 - t;
-            }
+            if (o->constant || o->start || o->length != m->step_ns) span_of(m, o, &t, &h);
             if (m->cells) m->times[2] = t, m->cells[1] = o->mark;
             if (begun < 0) begun = ticks();
             m->status = ((DoStep)o->function)(o->component, t, h, (int)o->never_back);
             const int64_t ended = ticks();
             m->took_ns = in_ns(ended - begun);
-            if (is_accepted(m->status)) count_time(o->times, m->took_ns, at_ns);
+            if (is_accepted(m->status)) count_time(o->times, m->took_ns, m->begin_ns + o->start);
             begun = ended;
             break;
         }

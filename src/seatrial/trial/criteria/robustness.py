@@ -44,6 +44,7 @@ class Evaluation:
 
     record: Record
     _known: dict[int, tuple[FloatArray, FloatArray]] = field(default_factory=dict)
+    _windows: dict[tuple[Interval, bool], tuple[Rows, Rows]] = field(default_factory=dict)
 
     def margins(self, node: Formula) -> tuple[FloatArray, FloatArray]:
         """Return the lower and the upper margin of a formula at every row."""
@@ -53,6 +54,11 @@ class Evaluation:
 
     def windows(self, interval: Interval, *, past: bool) -> tuple[Rows, Rows]:
         """Return the first row of the window of every row, and the one after its last."""
+        if (interval, past) not in self._windows:
+            self._windows[interval, past] = self._found(interval, past)
+        return self._windows[interval, past]
+
+    def _found(self, interval: Interval, past: bool) -> tuple[Rows, Rows]:
         time, n = self.record.time, len(self.record.time)
         first, last = interval
         if past:
@@ -60,7 +66,10 @@ class Evaluation:
             if last is None:
                 return np.zeros(n, dtype=np.intp), ends
             return np.searchsorted(time, time - last - HALF_NS, side="left"), ends
-        starts = np.searchsorted(time, time + first - HALF_NS, side="left")
+        if first == 0.0 and (np.diff(time) > 2.0 * HALF_NS).all():
+            starts = np.arange(n)
+        else:
+            starts = np.searchsorted(time, time + first - HALF_NS, side="left")
         if last is None:
             return starts, np.full(n, n, dtype=np.intp)
         return starts, np.searchsorted(time, time + last + HALF_NS, side="right")

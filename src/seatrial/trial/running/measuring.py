@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import contextlib
 import time
-from dataclasses import asdict, dataclass, field
+from collections.abc import Sequence
+from dataclasses import dataclass, field
 from typing import Any
 
 from ...errors import SimulationError
@@ -57,10 +58,9 @@ def measure_trial(trial: Trial, *, engine: Engine = "fmu", hooks: Hooks | None =
     """
     hooks = hooks or Hooks()
     begun = time.perf_counter()
-    if engine == "native" and (at_once := offered("batch.measured")) is not None:
-        found: Measured | None = at_once(trial, hooks)
-        if found is not None:
-            return found
+    (found,) = measure_together([trial], engine, hooks)
+    if found is not None:
+        return found
     with hooks.interruptible():
         prepared = prepare(trial, engine, hooks)
     try:
@@ -79,6 +79,19 @@ def measure_trial(trial: Trial, *, engine: Engine = "fmu", hooks: Hooks | None =
             found = Measured("failed", str(problem), found.seed)
     found.wall = time.perf_counter() - begun
     return found
+
+
+def measure_together(
+    trials: Sequence[Trial], engine: Engine, hooks: Hooks, planned: int = 1
+) -> list[Measured | None]:
+    """Measure those of some trials that can share a compiled program; None in the place of others.
+
+    What each comes to is what `measure_trial` says of it. ``planned`` is how many trials there are
+    in all: a program for many is worth its time. Raises StoppedError.
+    """
+    together = offered("batch.measured") if engine == "native" else None
+    found: list[Measured | None] = [None] * len(trials)
+    return found if together is None else together(trials, hooks, planned)
 
 
 def _stepped(prepared: Prepared, hooks: Hooks) -> Measured:
@@ -103,4 +116,4 @@ def _stepped(prepared: Prepared, hooks: Hooks) -> Measured:
 
 def verdict_row(name: str, check: str, verdict: Verdict) -> dict[str, Any]:
     """Return what a table of runs has of a criterion."""
-    return {"name": name, "check": check, **asdict(verdict)}
+    return {"name": name, "check": check, **vars(verdict)}

@@ -6,18 +6,18 @@ import gc
 import os
 import traceback
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from ...errors import SeatrialError, SimulationError
+from ...errors import InputError, SeatrialError, SimulationError
 from ...system.system import Engine, System
 from ..files.trial import Trial
 from .forked_child import Child, forward_output
 from .hooks import Hooks, Observer
 from .link import Frame
-from .measuring import measure_trial
+from .measuring import measure_together, measure_trial
 from .memory import resident_bytes
 from .run import Result, check_trial, run_trial
 
@@ -37,7 +37,7 @@ def serve(
     keep_going: bool,
     child: Child,
 ) -> None:
-    """Carry out orders until there are no more: ``check``, ``measure``, ``run``, ``report``.
+    """Carry out orders until there are no more: each is an `Order` of the supervision.
 
     ``page`` writes the report of a run's folder, ``observer`` looks at the runs, which
     ``keep_going`` without a lost link.
@@ -50,7 +50,8 @@ def serve(
         for order in orders:
             os.chdir(here)  # a component may have left it
             with _limited(child, order[0]):
-                done = _carried_out(order, trials, engine, page, (child, observer, keep_going))
+                seen = child, observer, keep_going
+                done = _carried_out(order, trials, engine, page, seen)
             child.link.send(*done)
             gc.collect(0)  # a trial's objects refer to each other: thousands of them would pile up
 
@@ -62,13 +63,15 @@ def _carried_out(
     page: Page,
     seen: tuple[Child, Observer | None, bool],
 ) -> Frame:
-    what, number, folder, changes = order
+    what, number, folder, changes, several = order
     try:
         out = None if folder is None else Path(folder)
         if what == "report" and out is not None:
             page(out)
             return ["done", {}]
-        trial = trials[number] if changes is None else trials[number].changed(*changes)
+        if what == "measure together":
+            return ["done", {"found": _together(several, trials, engine, _unnoted(seen[0]))}]
+        trial = _changed(trials, number, changes)
         is_noted = what != "measure" or trial.file.limit.is_of_run
         hooks = _hooks(*seen) if is_noted else _unnoted(seen[0])
         if what == "check":
@@ -89,11 +92,28 @@ def _carried_out(
         return ["error", SimulationError.__name__, f"an error of seatrial itself:\n{text}"]
 
 
+def _changed(trials: Sequence[Trial], number: int, changes: Any) -> Trial:
+    return trials[number] if changes is None else trials[number].changed(*changes)
+
+
+def _together(
+    several: Sequence[tuple[int, Any]], trials: Sequence[Trial], engine: Engine, hooks: Hooks
+) -> list[dict[str, Any] | None]:
+    """Return what trials come to that can share a compiled program; None of each other."""
+    made: dict[int, Trial] = {}
+    for place, (number, changes) in enumerate(several):
+        with suppress(InputError):  # the order for it alone will say so
+            made[place] = _changed(trials, number, changes)
+    measured = measure_together(list(made.values()), engine, hooks, len(trials))
+    found = dict(zip(made, measured, strict=True))
+    return [None if (each := found.get(i)) is None else vars(each) for i in range(len(several))]
+
+
 @contextmanager
 def _limited(child: Child, what: str) -> Iterator[None]:
     """Let the keeper see that a run goes on, which has limits."""
     trace = child.call_trace
-    is_run = what in ("measure", "run")
+    is_run = what in ("measure", "measure together", "run")
     trace.before = resident_bytes(os.getpid()) if is_run else 0
     trace.runs += is_run
     child.notes = True

@@ -41,8 +41,8 @@ from .run import Result, check_trial, run_trial
 from .supervised import Page, no_page, serve
 
 _ERRORS = {kind.__name__: kind for kind in (InputError, SimulationError, StoppedError)}
-Order = Literal["check", "measure", "run", "report"]
-Outcome = Result | Measured | bool
+Order = Literal["check", "measure", "measure together", "run", "report"]
+Outcome = Result | Measured | list[Measured | None] | bool
 Changes = tuple[Mapping[str, Any], str]
 """Settings, and who says so."""
 _LOGGER = logging.getLogger(__name__)
@@ -104,11 +104,17 @@ class Supervisor:
         return measured
 
     def begin(
-        self, what: Order, number: int, folder: Path | None = None, changes: Changes | None = None
+        self,
+        what: Order,
+        number: int,
+        folder: Path | None = None,
+        changes: Changes | None = None,
+        several: Sequence[tuple[int, Changes | None]] = (),
     ) -> None:
         """Begin to check, measure or run a trial, or to write the report of its folder.
 
-        ``changes`` are settings on top of the trial's own.
+        ``changes`` are settings on top of the trial's own. Of ``several`` trials, each with its
+        changes, those are measured together that can share a compiled program.
         """
         self._forget()
         self._order = what, number, folder, changes
@@ -119,7 +125,7 @@ class Supervisor:
         self._say_unwatched(trial.file.limit)
         if _IN_PROCESS:
             return
-        order = what, number, None if folder is None else str(folder), changes
+        order = what, number, None if folder is None else str(folder), changes, several
         begins = self._forked is None
         if self._forked is None:
             preload(self._alike, self._engine)
@@ -139,8 +145,8 @@ class Supervisor:
     def poll(self, *, wait: bool = True) -> Outcome | None:
         """Return what came of the order, within a moment; None while it is carried out.
 
-        It is the result of a run, or what was measured; of a check, whether the trial must run
-        alone. Raises what `check` and `run` raise.
+        It is the result of a run, or what was measured, None for a trial that shares no program;
+        of a check, whether the trial must run alone. Raises what `check` and `run` raise.
         """
         what, number, folder, _ = self._order
         if self._forked is None:
@@ -177,6 +183,8 @@ class Supervisor:
             return check_trial(trial, self._engine, self._hooks)
         if what == "measure":
             return measure_trial(trial, engine=self._engine, hooks=self._hooks)
+        if what == "measure together":
+            return []  # each alone
         if what == "report" and folder is not None:
             self._page(folder)
             return True
@@ -186,6 +194,8 @@ class Supervisor:
         what, _, out, _ = self._order
         if what == "measure":
             return Measured(**content)
+        if what == "measure together":
+            return [None if each is None else Measured(**each) for each in content["found"]]
         if what != "run":
             return bool(content.get("alone", True))
         folder = self._shown(out)

@@ -34,6 +34,13 @@ typedef struct {
     fmi2SetFMUstateTYPE *set_state;
     void (*surround)(void *component, int (*met)(const void *, double, const double *, double *),
                      const void *of);
+#if LANES /* of copies that step together; of a component that cannot, the first is 0 */
+    size_t together; /* bytes that all of them share */
+    void (*gather)(void *memory, void *const copies[], const unsigned char *active);
+    void (*step)(void *memory, void *const copies[], const unsigned char *active, double t, double h,
+                 fmi2Status *found);
+    void (*refresh)(void *memory, void *const copies[], const unsigned char *active);
+#endif
 } Carrier;
 
 #endif
@@ -66,6 +73,9 @@ const Carrier CARRIER = {
     seatrial_surround,
 #else
     NULL,
+#endif
+#if defined(STEPS_TOGETHER)
+    sizeof(Together), gather_together, step_together, refresh_together,
 #endif
 };
 #endif

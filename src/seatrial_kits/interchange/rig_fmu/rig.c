@@ -321,3 +321,7 @@ STATUS(Real, fmi2Real)
 STATUS(Integer, fmi2Integer)
 STATUS(Boolean, fmi2Boolean)
 STATUS(String, fmi2String)
+
+#if LANES
+#include "lockstep.inc"
+#endif

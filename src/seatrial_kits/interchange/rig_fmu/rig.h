@@ -54,6 +54,20 @@ typedef struct Work Work;
 Work *rig_new_work(void);
 void rig_lend(fmi2Component rig, Work *work);
 
+#if LANES
+/* What LANES copies need to step together; NULL without memory, or if none of their components can. */
+typedef struct Lockstep Lockstep;
+Lockstep *rig_new_lockstep(void);
+void rig_free_lockstep(Lockstep *lockstep);
+
+/* Let the `active` of LANES instances, after as many steps each, take `count` steps; each gets rows
+   of values as of `rig_read`, one after each step, unless `rows` is NULL. How many were taken counts
+   one that failed too. */
+void rig_step_together(Lockstep *lockstep, fmi2Component rigs[], const unsigned char active[],
+                       int64_t count, const fmi2ValueReference vr[], size_t values, double *rows[],
+                       int64_t taken[], fmi2Status found[]);
+#endif
+
 /* Values of numbers, of any type. */
 fmi2Status rig_read(fmi2Component rig, const fmi2ValueReference vr[], size_t count, double values[]);
 
