@@ -2,7 +2,7 @@
 
 SEATRIAL_ROS2 names the folder of a built workspace (`build_rclpy.sh`): its ``v`` is the environment
 of its Python, its ``install`` what was built. The link is on DDS, with nodes of rmw_cyclonedds, or a
-node of that rclpy, with nodes of rmw_fastrtps, whose services DDS alone cannot answer.
+node of that rclpy: with nodes of rmw_fastrtps, whose services DDS alone cannot answer, if it is there.
 """
 
 import json
@@ -129,7 +129,7 @@ STEPPED = """
 import select, sys, time
 from seatrial import Simulation
 
-set = {"autopilot.ros2.domain": int(sys.argv[1])}
+set = {"autopilot.ros2.domain": int(sys.argv[1]), "autopilot.ros2.transport": sys.argv[2]}
 with Simulation("sil", choices={"vehicle": "otter", "autopilot": "ros2"}, set=set) as simulation:
     while not select.select([sys.stdin], [], [], 0.0)[0]:
         simulation.step(1)
@@ -146,12 +146,14 @@ def transport(request):
 @pytest.fixture
 def environment(domain, transport):
     """A function: the environment of a program, in the workspace or not."""
-    middleware = {"dds": "rmw_cyclonedds_cpp", "rclpy": "rmw_fastrtps_cpp"}[transport]
+    other = (ROS / "install/lib/librmw_fastrtps_cpp.so").is_file() and transport == "rclpy"
+    middleware = "rmw_fastrtps_cpp" if other else "rmw_cyclonedds_cpp"
     of_ros = {
+        "ROS_DISTRO": (ROS / "distribution").read_text().strip(),
         "RMW_IMPLEMENTATION": middleware,
         "RCL_LOGGING_IMPLEMENTATION": "rcl_logging_noop",
         "CYCLONEDDS_URI": LOOPBACK,
-        "ROS_LOCALHOST_ONLY": str(int(transport == "rclpy")),
+        "ROS_LOCALHOST_ONLY": str(int(other)),
         "ROS_DOMAIN_ID": str(domain),
     }
     plain = {k: v for k, v in os.environ.items() if not k.startswith("PYTHON")} | of_ros
@@ -200,6 +202,7 @@ def helm():
 def test_the_tutorial_s_node_sails_the_square_twice_alike(node, environment, transport, tmp_path):
     node("helm.py", helm())
     lockstep = (
+        f"autopilot.ros2.transport={transport}",
         "autopilot.ros2.lockstep=stamped",
         *(f"autopilot.ros2.{key}=100 ms" for key in ("period", "truth_period")),
     )
@@ -243,7 +246,7 @@ def test_a_node_for_vrx_runs_as_it_is(node, domain, tmp_path):
 
 def test_clock_imu_services_and_faults(node, environment, transport, domain):
     process = node("watch.py", WATCH)
-    command = [sys.executable, "-c", STEPPED, str(domain)]
+    command = [sys.executable, "-c", STEPPED, str(domain), transport]
     with subprocess.Popen(
         command, env=environment(inside=transport == "rclpy"), text=True,
         stdin=subprocess.PIPE, stdout=subprocess.PIPE,

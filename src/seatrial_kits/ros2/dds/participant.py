@@ -9,6 +9,7 @@ from typing import Any, ClassVar
 from seatrial.errors import InputError, unknown
 
 from ..messages.definitions import INSTALL
+from ..messages.hashes import announced_hash
 from ..reach import confined
 from ..transport import Durability, Sample
 from .idl import sample_type
@@ -92,7 +93,9 @@ class DdsWriter:
         self.name, self.kind, self.dropped = topic, kind, 0
         depth = 1 if durability == "latched" else 10
         self.dds = DataWriter(
-            participant.dds, participant.topic(topic, kind, prefix), _quality(durability, depth)
+            participant.dds,
+            participant.topic(topic, kind, prefix),
+            _quality(durability, depth, kind),
         )
         participant.writers.append(self.dds.guid.bytes)
 
@@ -118,7 +121,9 @@ class DdsReader:
         from cyclonedds.sub import DataReader
 
         self.dds = DataReader(
-            participant.dds, participant.topic(topic, kind, prefix), _quality("volatile", depth)
+            participant.dds,
+            participant.topic(topic, kind, prefix),
+            _quality("volatile", depth, kind),
         )
         participant.readers.append(self.dds.guid.bytes)
 
@@ -136,11 +141,13 @@ class DdsReader:
         return len(self.dds.get_matched_publications())
 
 
-def _quality(durability: Durability, depth: int) -> Any:
+def _quality(durability: Durability, depth: int, kind: str) -> Any:
     from cyclonedds.core import Policy, Qos
 
     kept = {"volatile": Policy.Durability.Volatile, "latched": Policy.Durability.TransientLocal}
+    hashed = announced_hash(kind)
     return Qos(
+        *([Policy.Userdata(f"typehash={hashed};".encode())] if hashed else []),
         Policy.Reliability.Reliable(max_blocking_time=0),
         kept[durability],
         Policy.History.KeepLast(depth),

@@ -16,23 +16,21 @@ from seatrial.errors import InputError, unknown
 from .interfaces import INTERFACES
 
 INSTALL = 'pip install "seatrial[ros2]"'
-_NO_FIELDS = "uint8 structure_needs_at_least_one_member\n"
+NO_FIELDS = "uint8 structure_needs_at_least_one_member\n"
 """Of a message without any, as rosidl has it."""
 _HEADER = "uint64 client_guid\nint64 sequence_number\n"
-_PARTS = ("_Request", "_Response")
+PARTS = ("_Request", "_Response")
 _WITHOUT_NODES = ("ROS2_DASHING", "ROS2_ELOQUENT")
 """Distributions whose nodes are announced otherwise."""
 
 
-@cache
-def type_store() -> Any:
-    """Return the store of the types of ROS_DISTRO, else Humble's, with those of `INTERFACES`.
+def fresh_store() -> Any:
+    """Return a store of the types of ROS_DISTRO, else Humble's, as rosbags has it.
 
-    From Iron on, identifiers of nodes have 16 bytes, not 24, and a Range has a variance. Raises
-    InputError without the package rosbags, and for a distribution that it has not.
+    Raises InputError without the package rosbags, and for a distribution that it has not.
     """
     try:
-        from rosbags.typesys import Stores, get_types_from_msg, get_typestore
+        from rosbags.typesys import Stores, get_typestore
     except ImportError:
         raise InputError(f"ROS 2 needs rosbags, which is not installed: {INSTALL}") from None
     stores = {
@@ -44,26 +42,38 @@ def type_store() -> Any:
     distribution = os.environ.get("ROS_DISTRO", "") or "humble"
     if distribution not in stores:
         raise InputError(f"ROS_DISTRO: {unknown('distribution', distribution, stores)}")
-    store = get_typestore(stores[distribution])
+    return get_typestore(stores[distribution])
+
+
+@cache
+def type_store() -> Any:
+    """Return the store of the types of ROS_DISTRO, else Humble's, with those of `INTERFACES`.
+
+    From Iron on, identifiers of nodes have 16 bytes, not 24, and a Range has a variance. Raises
+    InputError as `fresh_store`.
+    """
+    store = fresh_store()
+    from rosbags.typesys import get_types_from_msg
+
     found: dict[str, Any] = {}
     for name, text in INTERFACES.items():
         package, group, short = name.split("/")
         if group == "msg":
             found |= get_types_from_msg(text, name)
             continue
-        definitions = _of_action(package, short, text) if group == "action" else {short: text}
+        definitions = of_action(package, short, text) if group == "action" else {short: text}
         for part, fields in definitions.items():
             if "---\n" not in fields:
                 found |= get_types_from_msg(fields, f"{package}/msg/{part}")
                 continue
-            for end, half in zip(_PARTS, fields.split("---\n"), strict=True):
-                whole = _HEADER + (half or _NO_FIELDS)
+            for end, half in zip(PARTS, fields.split("---\n"), strict=True):
+                whole = _HEADER + (half or NO_FIELDS)
                 found |= get_types_from_msg(whole, f"{package}/msg/{part}{end}")
     store.register(found)
     return store
 
 
-def _of_action(package: str, name: str, text: str) -> dict[str, str]:
+def of_action(package: str, name: str, text: str) -> dict[str, str]:
     """Return the messages and services of an action, of its three parts."""
     named = f"{package}/msg/{name}"
     own = dict(zip(("_Goal", "_Result", "_Feedback"), text.split("---\n"), strict=True))
@@ -84,9 +94,15 @@ def service_parts(kind: str) -> tuple[str, str]:
     return f"{package}/msg/{name}_Request", f"{package}/msg/{name}_Response"
 
 
-def dds_name(kind: str) -> str:
-    """Return the name of a type in DDS, ``package::msg::dds_::Name_``."""
+def ros_name(kind: str) -> str:
+    """Return the name that ROS has for a type of the store, as ``package/srv/Name_Request``."""
     package, _, name = kind.split("/")
     action = f"{package}/action/{name.partition('_')[0]}" in INTERFACES
-    group = "action" if action else "srv" if name.endswith(_PARTS) else "msg"
+    group = "action" if action else "srv" if name.endswith(PARTS) else "msg"
+    return f"{package}/{group}/{name}"
+
+
+def dds_name(kind: str) -> str:
+    """Return the name of a type of the store in DDS, ``package::msg::dds_::Name_``."""
+    package, group, name = ros_name(kind).split("/")
     return f"{package}::{group}::dds_::{name}_"

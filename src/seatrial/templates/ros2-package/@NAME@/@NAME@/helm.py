@@ -29,21 +29,25 @@ class Helm(Node):
         command = TwistStamped()
         command.header.stamp = odometry.header.stamp
         if self.leg is not None:
-            error = self.heading_error(odometry.pose.pose)
-            command.twist.linear.x = SPEED * max(0.2, math.cos(error))
-            command.twist.angular.z = GAIN * error
+            error, distance = self.to_go(odometry.pose.pose)
+            command.twist.linear.x = min(SPEED, GAIN * distance) * max(0.0, math.cos(error))
+            command.twist.angular.z = GAIN * error * min(1.0, distance)
         self.velocity.publish(command)
 
-    def heading_error(self, pose):
+    def to_go(self, pose):
+        """Return the heading error to a point ahead on the leg, and the distance to its end."""
         begin, end = self.leg
         along = math.atan2(end.y - begin.y, end.x - begin.x)
-        north, east = pose.position.y - begin.y, pose.position.x - begin.x
-        across = north * math.cos(along) - east * math.sin(along)
+        east, north = pose.position.x - begin.x, pose.position.y - begin.y
+        done = east * math.cos(along) + north * math.sin(along)
+        ahead = min(done + LOOKAHEAD, math.dist((begin.x, begin.y), (end.x, end.y)))
+        east, north = ahead * math.cos(along) - east, ahead * math.sin(along) - north
         turn = pose.orientation
         yaw = math.atan2(
             2.0 * (turn.w * turn.z + turn.x * turn.y), 1.0 - 2.0 * (turn.y**2 + turn.z**2)
         )
-        return math.remainder(along - math.atan2(across, LOOKAHEAD) - yaw, math.tau)
+        distance = math.dist((pose.position.x, pose.position.y), (end.x, end.y))
+        return math.remainder(math.atan2(north, east) - yaw, math.tau), distance
 
 
 def main():
