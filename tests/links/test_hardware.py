@@ -160,7 +160,7 @@ def test_nothing_else_opens_sockets_or_ports():
     }
     files = {"seatrial_kits/can/recorded.py"}  # python-can reads a log, no bus
     opened_before = {"seatrial/links/safe_state_keeper.py", "seatrial_kits/can/safe_state.py"}
-    bound = {"seatrial_kits/ros2/dds/confinement.py"}  # those of DDS, to the loopback device
+    bound = {"seatrial_kits/ros2/confinement.py"}  # those of DDS, to the loopback device
     of_tests = {"seatrial_kits/mavlink/testing.py"}  # the other end, on the loopback only
     # On the loopback, with a token: tests/kits/live/test_server.py. The stage only wakes its loop.
     pages = {

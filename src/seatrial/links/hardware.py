@@ -17,6 +17,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from ..errors import InputError
+from .environment import variables
 from .own_terminals import is_own
 
 ALLOWED = "SEATRIAL_HARDWARE"
@@ -56,16 +57,8 @@ def confined() -> Iterator[None]:
 
     Those in processes of their own keep to that.
     """
-    before = {name: os.environ.get(name) for name in _FLAGS}
-    os.environ.update(dict.fromkeys(_FLAGS, _CONFINED))
-    try:
+    with variables(dict.fromkeys(_FLAGS, _CONFINED)):
         yield
-    finally:
-        for name, value in before.items():
-            if value is None:
-                del os.environ[name]
-            else:
-                os.environ[name] = value
 
 
 # ---------------------------------------------------------------------- what links ask

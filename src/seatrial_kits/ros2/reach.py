@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from contextlib import contextmanager
 
 from seatrial.errors import InputError
+from seatrial.links.environment import variables
 from seatrial.links.hardware import network_allowed
 
 from .confinement import confined_sockets
@@ -54,19 +55,5 @@ def confined(*, cyclone: bool) -> Iterator[None]:
     """
     others = reaches_others()
     wanted = {} if others else _OF_CYCLONE if cyclone else _OF_ROS
-    with _variables(wanted), confined_sockets(others):
+    with variables(wanted), confined_sockets(others):
         yield
-
-
-@contextmanager
-def _variables(wanted: Mapping[str, str]) -> Iterator[None]:
-    before = {name: os.environ.get(name) for name in wanted}
-    os.environ.update(wanted)
-    try:
-        yield
-    finally:
-        for name, value in before.items():
-            if value is None:
-                del os.environ[name]
-            else:
-                os.environ[name] = value
