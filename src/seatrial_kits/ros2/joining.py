@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import os
 from importlib.util import find_spec
 from pathlib import Path
@@ -13,6 +14,7 @@ from .rcl.node import RclpyNode
 from .reach import domain_of
 from .transport import Transport
 
+_LOGGER = logging.getLogger("seatrial.ros2")
 TRANSPORTS = ("auto", "dds", "rclpy")
 _PACKAGES = "share/ament_index/resource_index/packages"
 """Where a workspace lists its packages."""
@@ -41,7 +43,14 @@ def join(domain: int, node: str, transport: str = "auto") -> Transport:
 def _prefers_rclpy() -> bool:
     if os.environ.get("RMW_IMPLEMENTATION") == "rmw_cyclonedds_cpp" and find_spec("cyclonedds"):
         return False
-    return not _why_no_rclpy()
+    missing = _why_no_rclpy()
+    if missing and os.environ.get("AMENT_PREFIX_PATH"):
+        _LOGGER.warning(
+            "rclpy cannot be used: %s: the link speaks DDS, whose services nodes of "
+            "rmw_cyclonedds_cpp alone can call",
+            missing,
+        )
+    return not missing
 
 
 def _why_no_rclpy() -> str:
