@@ -4,17 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from types import TracebackType
-from typing import Any
-
-import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from typing import TYPE_CHECKING, Any
 
 from seatrial.errors import InputError
 
 from .batch import Batch
-from .per_copy import mask_of, seeds_of
 
-Floats = NDArray[np.float64]
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import ArrayLike, NDArray
+
+    Floats = NDArray[np.float64]
 
 
 class Batches:
@@ -29,6 +29,8 @@ class Batches:
     """
 
     def __init__(self, batches: Sequence[Batch]) -> None:
+        import numpy as np
+
         if not batches:
             raise InputError("Batches: at least one batch is needed")
         self.batches = tuple(batches)
@@ -51,11 +53,15 @@ class Batches:
     @property
     def time(self) -> Floats:
         """Simulated time of each copy, s, shape (count,)."""
+        import numpy as np
+
         return np.concatenate([batch.time for batch in self.batches])
 
     @property
     def seeds(self) -> NDArray[np.int64]:
         """Seed of each copy."""
+        import numpy as np
+
         return np.concatenate([batch.seeds for batch in self.batches])
 
     @property
@@ -103,6 +109,8 @@ class Batches:
         seed: int | Sequence[int] | None = None,
     ) -> None:
         """Start copies anew, those of ``mask`` or all; copy i has the seed ``seed`` + i."""
+        from .per_copy import seeds_of
+
         seeds = None if seed is None else seeds_of(seed, self.count)
         settings = {key: self._split(value) for key, value in (set or {}).items()}
         for i, (batch, chosen) in enumerate(self._masked(mask)):
@@ -140,11 +148,15 @@ class Batches:
     # ------------------------------------------------------------------ inside
 
     def _masked(self, mask: ArrayLike | None) -> list[tuple[Batch, NDArray[np.bool_]]]:
+        from .per_copy import mask_of
+
         whole = mask_of(mask, self.count)
         return [(b, whole[rows].copy()) for b, rows in zip(self.batches, self._rows, strict=True)]
 
     def _split(self, value: Any) -> list[Any]:
         """Return what each batch gets of a value: its rows, or one value for all copies."""
+        import numpy as np
+
         rows = np.asarray(value)
         if rows.dtype.kind in "fiub" and rows.ndim and rows.shape[0] == self.count:
             return [rows[own] for own in self._rows]
@@ -157,6 +169,8 @@ class Batches:
             call(batch, name, own, chosen)
 
     def _joined(self, names: Sequence[str], read: Callable[[Batch], Floats]) -> Floats:
+        import numpy as np
+
         found = [read(batch) for batch in self.batches]
         sizes = [values.shape[-1] if values.ndim > 1 else 1 for values in found]
         if len(set(sizes)) > 1:
