@@ -50,7 +50,8 @@ class Registry:
 
     def names(self) -> list[str]:
         """Return every name, shipped ones first."""
-        added = sorted({entry.name for entry in self._added()})
+        of_kits = {name for kind, name in kits().by_name if kind == self._kind}
+        added = sorted(of_kits | {entry.name for entry in _entries(self.group, tuple(sys.path))})
         return [*self.shipped, *(name for name in added if name not in self.shipped)]
 
     def target(self, name: str) -> str:
@@ -89,12 +90,6 @@ class Registry:
                 f"{self.noun} {name!r}: cannot load {target!r} of the entry-point group "
                 f"{self.group!r}: {type(error).__name__}: {error}"
             ) from error
-
-    def _added(self) -> tuple[_Entry, ...]:
-        return (*self._of_kits(), *_entries(self.group, tuple(sys.path)))
-
-    def _of_kits(self) -> tuple[_Entry, ...]:
-        return tuple(map(_of_kit, kits().entries(self._kind)))
 
     @property
     def _kind(self) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from functools import cache
 from pathlib import Path
 
@@ -33,11 +34,16 @@ def content_of(kit: Kit) -> Path:
 
 def provided_folders(kind: str) -> list[Path]:
     """Return the folders with files of ``kind``, such as ``harness/rigs``, of the core and kits."""
+    return [folder for folder in _places_of(kind, tuple(sys.path)) if folder.is_dir()]
+
+
+@cache
+def _places_of(kind: str, _path: tuple[str, ...]) -> list[Path]:
+    """Return where files of ``kind`` would be, with the kits on ``sys.path``."""
     top, _, below = kind.partition("/")
     shipped = shipped_folder(top) / below if below else shipped_folder(top)
     inside = below or _IN_KITS.get(top, top)
-    folders = [shipped, *(content_of(kit) / inside for kit in kits().found)]
-    return [folder for folder in folders if folder.is_dir()]
+    return [shipped, *(content_of(kit) / inside for kit in kits().found)]
 
 
 def is_provided(path: Path) -> bool:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import atexit
 import gc
 import logging
 import sys
@@ -42,6 +43,7 @@ def main() -> None:
     Status 1 is a verdict: an error of seatrial itself shows where it was, and has status 3.
     """
     gc.set_threshold(_ALLOCATIONS)
+    atexit.register(gc.freeze)  # else the end of Python looks through all that was imported
     if logging.lastResort is not None:
         logging.lastResort.setFormatter(PrintableFormatter())
     with interrupting(), dropping_unread():

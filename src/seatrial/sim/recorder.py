@@ -8,7 +8,6 @@ from array import array
 from collections.abc import Sequence
 from contextlib import suppress
 from fnmatch import fnmatchcase
-from itertools import accumulate
 from pathlib import Path
 from typing import Any
 
@@ -19,6 +18,7 @@ from ..errors import InputError, unmatched
 from ..model.component import NS
 from ..system.references.values import storable
 from ..system.system import System
+from .compiled.decimals import rows_as_text
 from .compiled.rows import Rows
 from .master import Master
 
@@ -179,16 +179,8 @@ class Recorder:
         self._watched.keep(steps, table[:, :count])
         due = steps % self.every == 0
         times = _times(self._master, steps[due])
-        # What the writer makes of numbers, in half of the time: many columns are alike.
-        known: dict[tuple[bytes, bool], list[str]] = {}
-        columns = [_texts(times)]
-        for column, values in enumerate(table[due, count:].T):
-            is_whole = column in self._whole_numbers
-            key = values.tobytes(), is_whole
-            if key not in known:
-                known[key] = _texts(values.astype(np.int64) if is_whole else values)
-            columns.append(known[key])
-        self._write([f"{','.join(row)}\n".encode() for row in zip(*columns, strict=True)])
+        whole = [column + 1 for column in self._whole_numbers]
+        self._write(*rows_as_text(np.column_stack([times, table[due, count:]]), whole))
 
     def watched(self) -> tuple[NDArray[np.float64], dict[str, NDArray[np.float64] | list[str]]]:
         """Return time and watched signals, texts as lists, at every communication step so far."""
@@ -215,17 +207,16 @@ class Recorder:
         row = self._row.getvalue().encode()
         self._row.seek(0)
         self._row.truncate()
-        self._write([row])
+        self._write(row, [len(row)])
 
-    def _write(self, rows: Sequence[bytes]) -> None:
-        """Write rows, each whole or not at all."""
-        data, written = b"".join(rows), 0
+    def _write(self, rows: bytes, ends: Sequence[int] | NDArray[np.int64]) -> None:
+        """Write rows, of which it is known where each ends, each whole or not at all."""
+        written = 0
         try:
-            while written < len(data):
-                written += self._file.write(data[written:])
+            while written < len(rows):
+                written += self._file.write(rows[written:])
         except OSError as error:
-            ends = accumulate(map(len, rows))
-            self._whole += max((end for end in ends if end <= written), default=0)
+            self._whole += max((int(end) for end in ends if end <= written), default=0)
             with suppress(OSError):
                 self._file.truncate(self._whole)
             raise self._named(error) from None
@@ -233,8 +224,3 @@ class Recorder:
 
     def _named(self, error: OSError) -> OSError:
         return OSError(error.errno, error.strerror, str(self._path))
-
-
-def _texts(values: NDArray[Any]) -> list[str]:
-    """Return numbers as they are written, so that they read back exactly."""
-    return list(map(repr, values.tolist()))

@@ -12,6 +12,7 @@ from seatrial.errors import InputError
 from .cases import Case
 from .columns import Column
 from .ended import Ended
+from .table_arrays import array_of
 
 RESULTS = "results.parquet"
 TIMING = "timing.parquet"
@@ -99,7 +100,7 @@ class _Writer:
     def _flush(self) -> None:
         columns = zip(*self._rows, strict=True)
         arrays = [
-            self._arrow.array(values, field.type)
+            array_of(self._arrow, values, field.type)
             for values, field in zip(columns, self._schema, strict=True)
         ]
         self._writer.write_table(self._arrow.table(arrays, schema=self._schema), ROWS)

@@ -1,4 +1,4 @@
-"""The library of `master.c`, compiled on demand."""
+"""The library of `master.c` and `decimals.c`, compiled on demand."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from pathlib import Path
 from ...fmi.on_demand import shared_library
 from .structures import Master, Operation, Pace
 
-_SOURCES = tuple(Path(__file__).with_name(name) for name in ("master.c", "fmi3.c"))
+_SOURCES = tuple(Path(__file__).with_name(name) for name in ("master.c", "fmi3.c", "decimals.c"))
 
 
 @cache
@@ -25,6 +25,7 @@ def library() -> ctypes.CDLL | None:
         return None
     found.master_size.restype = ctypes.c_int64
     found.master_run.argtypes = [ctypes.POINTER(Master), ctypes.c_int64]
+    found.rows_as_text.restype = None
     sizes = [ctypes.sizeof(one) for one in (Operation, Pace, Master)]
     return found if [found.master_size(i) for i in range(3)] == sizes else None
 

@@ -7,6 +7,7 @@ import datetime
 import itertools
 import json
 import os
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -54,23 +55,23 @@ def _new_folder(base: Path, name: str) -> Path:
 
 def write_json(path: Path, content: Any, *, synced: bool = False) -> None:
     """Write a JSON file as `write_whole` does. Raises OSError with the file's name."""
-    write_whole(path, _text(content) + "\n", synced=synced)
+    write_whole(path, json_text(content) + "\n", synced=synced)
 
 
-def write_json_with_reserve(path: Path, content: Any) -> None:
-    """Write a JSON file with space for `write_json_into_reserve`, white space at its end."""
-    write_whole(path, _text(content) + " " * _RESERVE + "\n")
+def write_with_reserve(path: Path, text: str) -> None:
+    """Write a JSON text with space for `write_into_reserve`, white space at its end."""
+    write_whole(path, text + " " * _RESERVE + "\n")
 
 
-def write_json_into_reserve(path: Path, content: Any) -> None:
-    """Write a JSON file, in the place of the one that is there if the disk cannot hold two.
+def write_into_reserve(path: Path, text: str) -> None:
+    """Write a JSON text, in the place of the file that is there if the disk cannot hold two.
 
     Raises OSError with the file's name.
     """
     try:
-        write_json(path, content)
+        write_whole(path, text + "\n")
     except OSError as error:
-        data = (_text(content) + "\n").encode()
+        data = (text + "\n").encode()
         with contextlib.suppress(OSError), path.open("r+b") as file:
             size = file.seek(0, os.SEEK_END)
             if len(data) <= size:
@@ -80,5 +81,11 @@ def write_json_into_reserve(path: Path, content: Any) -> None:
         raise error
 
 
-def _text(content: Any) -> str:
+def json_text(content: Any) -> str:
+    """Return JSON as files have it."""
     return json.dumps(content, indent=1, ensure_ascii=False)
+
+
+def with_more(text: str, more: Mapping[str, Any]) -> str:
+    """Return the `json_text` of an object, which is not empty, with ``more`` behind what it has."""
+    return text.removesuffix("\n}") + "," + json_text(more).removeprefix("{")

@@ -14,7 +14,7 @@ from ...sim.master import Master
 from ...sim.recorder import Recorder
 from ..criteria.verdict import Verdict
 from .hooks import Hooks
-from .output import write_json, write_json_into_reserve, write_json_with_reserve
+from .output import json_text, with_more, write_into_reserve, write_json, write_with_reserve
 from .preparation import Prepared
 from .stepping import Stepping, watched_signals
 
@@ -48,6 +48,7 @@ class Run:
         self._floods: list[str] = []
         self._late: list[str] = []
         """Errors of the release of a run that had failed or was stopped before."""
+        self._decided = json_text(prepared.manifest)
 
     def simulate(self) -> None:
         """Run to the end. Errors of the simulation and of the disk are kept in ``error``."""
@@ -115,7 +116,7 @@ class Run:
         """Write the manifest of a run under way; nothing empty is left on a full disk."""
         path = self.folder / "manifest.json"
         try:
-            write_json_with_reserve(path, self._manifest())
+            write_with_reserve(path, self._manifest())
         except OSError:
             for claimed in (path, self.folder / "signals.csv"):
                 claimed.unlink(missing_ok=True)
@@ -139,10 +140,10 @@ class Run:
     def _write_end(self) -> None:
         """Write the final manifest; if even that cannot be, the one there says "running"."""
         with contextlib.suppress(OSError):
-            write_json_into_reserve(self.folder / "manifest.json", self._manifest())
+            write_into_reserve(self.folder / "manifest.json", self._manifest())
 
-    def _manifest(self) -> dict[str, Any]:
-        return {**self.prepared.manifest, "status": self.status, "error": self.error}
+    def _manifest(self) -> str:
+        return with_more(self._decided, {"status": self.status, "error": self.error})
 
     def _timing(self, started: str) -> dict[str, Any]:
         """Return what depends on the machine's speed."""
