@@ -1,5 +1,5 @@
 /* Rows of numbers as text, as Python's `repr` writes them: the fewest digits that read back exactly,
-   of those the nearest (R. Giulietti, "The Schubfach way to render doubles", 2020).
+   of those the nearest ([Giulietti2020] of docs/bibliography.md).
 
    With v = c 2^q and k so that 10^k <= 2^q < 10^(k+1), at most one multiple of 10^(k+1) and at
    least one of 10^k read back as v. Products with powers of ten keep all that comparisons need:

@@ -1,4 +1,4 @@
-"""Rows of numbers as text, by `decimals.c`."""
+"""Rows of numbers as text, by `decimals.c`: shortest digits as in [Giulietti2020]."""
 
 from __future__ import annotations
 
