@@ -90,6 +90,18 @@ def test_a_copy_has_the_bytes_of_a_single_run(
         assert [v.hex() for v in found[i].tolist()] == [v.hex() for v in expected]
 
 
+def test_threads_of_which_one_steps_copies_together_leave_each_other_alone(rig: Path) -> None:
+    """Of five copies one thread has two, one by one, the other three, which can step in lanes."""
+    found = []
+    for threads in (1, 2):
+        with Batch(rig, 5, seed=1, threads=threads) as batch:
+            for k in range(1000):
+                batch.set("pilot.wanted", np.arange(5.0) + k % 2)  # read as the step begins
+                batch.step(50)
+            found.append((batch.failures, batch.get(*batch.signals).tobytes()))
+    assert found[0] == found[1]
+
+
 def test_a_single_simulation_starts_anew_in_other_water(rig: Path) -> None:
     given = {"cork.current_speed": 0.4, "cork.mass": 3.0}
     expected = single(rig, 8, given, lambda one: one.step(25))
